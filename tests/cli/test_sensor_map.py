@@ -53,6 +53,22 @@ def test_shapes_and_units_of_a_foreign_recording(run, tmp_path):
     assert found["ship_speed"] == {"channel": "GPS", "unit": "kn", "cycle_s": 1.0}
 
 
+def test_a_set_point_that_jumps_is_no_pick_up(run, tmp_path):
+    """As a co-simulation writes a step test: titles without units."""
+    path = tmp_path / "cosim.csv"
+    titles = "Time,StepCount,engine_speed_set_point [1 real input],shaft_torque [2 real output]\n"
+    rows = (f"{0.01 * k:.2f},{k},{int(k % 100 > 80)},{np.sin(0.01 * k):.4f}\n" for k in range(1000))
+    path.write_text(titles + "".join(rows))
+    result = run("inspect", path)
+    assert "sensors" not in _map(result)
+    of_text = 'has no unit: state it, of text with --columns "NAME=NAME'
+    assert f"# [sensors.set_point]: 'engine_speed_set_point' {of_text} [rpm]\"" in result.output
+    assert f"# [sensors.shaft_torque]: 'shaft_torque' {of_text} [N m]\"" in result.output
+    units = "engine_speed_set_point=engine_speed_set_point [rpm],shaft_torque=shaft_torque [N m]"
+    found = _map(run("inspect", path, "--columns", units))["sensors"]
+    assert (found["set_point"]["unit"], found["shaft_torque"]["unit"]) == ("rpm", "N m")
+
+
 def test_encoders_and_speeds_are_proposed_in_their_unit(run, tmp_path):
     seconds = np.arange(20_000) / 1000.0
     channels = {

@@ -193,6 +193,14 @@ def test_what_is_no_channel_is_named(tmp_path):
     assert recording.left_out == {"spare": "it has no value in any row"}
 
 
+def test_arrays_in_a_field_are_named(tmp_path):
+    """As FMPy writes outputs of FMI 3.0 that are arrays."""
+    recording, values = _read(tmp_path, "time,twist,y\n" + _rows("{t:.2f},1500.1 100 3.25,{y}\n"))
+    reason = "it holds several numbers in a field (write each in a column of its own)"
+    assert recording.left_out == {"twist": f'{reason}, such as "1500.1 100 3.25"'}
+    assert np.array_equal(values["y"], Y)
+
+
 def test_names_that_come_again_get_a_number(tmp_path):
     recording, values = _read(tmp_path, "time,CH1,CH1\n" + _rows("{t:.2f},{u},{y}\n"))
     assert list(recording.channels) == ["CH1", "CH1 (2)"]

@@ -143,7 +143,8 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
         lines.append("")
     for needed in ("shaft_torque", "set_point"):
         if needed not in single:
-            lines += [f"# [sensors.{needed}]: no channel looks like it", ""]
+            called = _called_so(needed, seen)
+            lines += [f"# [sensors.{needed}]: {called or 'no channel looks like it'}", ""]
     lines += _without_sensor(seen, uses)
     if in_percent:
         lines += [f"# [sensors.rack]: of what is in %, {', '.join(map(repr, in_percent))}, no name says it", ""]
@@ -171,6 +172,14 @@ def _uses(seen: Sequence[Seen]) -> tuple[dict[str, Use | None], list[str], str]:
     uses = {item.channel.name: _use(item) for item in seen} | _uses_by_number(seen)
     in_percent = _of_no_name(seen, uses)
     return uses, in_percent, _set_point_left(seen, uses)
+
+
+def _called_so(needed: str, seen: Sequence[Seen]) -> str:
+    """Return that a channel without a unit is called as a sensor that is needed; empty where none is."""
+    pattern, unit = (_TORQUE, "N m") if needed == "shaft_torque" else (_SET_POINT, "rpm")
+    called = (item.channel.name for item in seen if not item.channel.unit and pattern.search(item.channel.name))
+    name = next(called, None)
+    return "" if name is None else f'{name!r} has no unit: state it, of text with --columns "NAME=NAME [{unit}]"'
 
 
 def _number(channel: Channel) -> int | None:
@@ -252,7 +261,9 @@ def _use(item: Seen) -> Use | None:
         return "instrument"
     if unit == "counts" or (unit in ANGLES_REV and _ENCODER.search(name)):
         return "encoder"
-    if item.is_pulses and unit in ("V", "") and (_PULSES.search(name) or unit == "V"):
+    # a set point that jumps between two levels is no pick-up
+    is_asked = unit == "" and _SET_POINT.search(name)
+    if item.is_pulses and unit in ("V", "") and (_PULSES.search(name) or unit == "V") and not is_asked:
         return "speed"
     return None
 

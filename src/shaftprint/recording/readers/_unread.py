@@ -13,12 +13,15 @@ _OCTAVE = "in Octave save -v7 FILE.mat"
 _NMEA_0183 = rb"[^\r\n$!]{0,80}[$!][A-Z]{4,5},[^\r\n]*\*[0-9A-F]{2}"
 _IKONVERT = rb"!PDGY,\d+,\d,\d+,\d+,[\d.]+,"
 _BUSMASTER = rb"\*{3}(?:BUSMASTER|PROTOCOL) "
+_VCD = rb"\$(?:date|version|timescale|scope|var|comment|enddefinitions)\b"
 _FRAMES_WITHOUT_TIMES = rb"(?:\w*can\d+ +|<0x)[0-9a-fA-F]{3,8}>? +\[\d\] +[0-9a-fA-F]{2}"
 _OF_LINES = {
     _NMEA_0183: "sentences of NMEA 0183, which come about once a second and are not read: log the NMEA 2000 bus itself "
     "(candump -l, BLF, ASC, TRC), or write the values as CSV with a column of times",
     _IKONVERT: "messages of NMEA 2000 in the form of iKonvert, which is not read: log the bus with candump -l",
     _BUSMASTER: "a log of BUSMASTER, which is not read: its converter of formats makes an ASC file of it",
+    _VCD: "edges of a logic analyser as VCD, which is not read: write them as CSV, a row of time [s] and level each; "
+    "times count in its $timescale",
     _FRAMES_WITHOUT_TIMES: "frames of a CAN bus without times: log it with candump -l",
 }
 """What lines of text begin as, and what they are."""
@@ -47,6 +50,7 @@ _BY_BYTES = {
     "its values as CSV",
     b"Rar!": _ARCHIVE,
     b"7z\xbc\xaf": _ARCHIVE,
+    b"\xb5b": "it is UBX of a u-blox receiver: write time and gSpeed [mm/s] of its NAV-PVT messages as CSV (pyubx2)",
     b"ULog": "it is a PX4 log: ulog2csv of the package pyulog writes CSV",
     b"\x89MCAP": "it is a ROS log: PlotJuggler exports it as CSV",
     b"#ROSBAG": "it is a ROS log: PlotJuggler exports it as CSV",

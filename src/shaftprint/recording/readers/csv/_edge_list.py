@@ -9,6 +9,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import uniform_clock
+from shaftprint.recording.readers._coarse_stamps import coarse_stamps
 from shaftprint.recording.readers._edges import pulses_at
 from shaftprint.recording.readers.csv._header import Header
 
@@ -21,6 +22,8 @@ _BLOCK = 1 << 16
 _FEWEST = 10
 # Samples stay on a level for longer than one row; of a list of edges so large a share of the rows changes something.
 _CHANGING = 0.9
+# A needle may begin and end at one time; where more edges share theirs it is printed too coarsely, and pulses would go.
+_MOST_SHARED = 0.05
 
 
 def edge_channels(
@@ -47,6 +50,12 @@ def edge_channels(
     if not times_alone and not _are_edges(path, header, read, count, changes):
         return None
     time_s = _times(path, header, read, count)
+    many = max(_edges_a_time(time_s[rows]) for rows in changes or [np.arange(count)])
+    if many > 1.0:
+        raise RecordingError(
+            f"{path}, column {header.names[header.time_column]}: expected a time for each edge, found {many:.3g} edges "
+            "with each; write the times with more digits."
+        )
     if times_alone:
         return {PULSES: _pulses_of(time_s)}
     return {
@@ -86,8 +95,16 @@ def _are_edges(path: Path, header: Header, read: Times, count: int, changes: lis
     try:
         uniform_clock(path, header.names[time], count, read)
     except RecordingError:
-        return True
+        # of samples whose changes share their stamps the rate is asked for
+        time_s = read(0, count)
+        return coarse_stamps(count, read) is None or not any(_edges_a_time(time_s[rows]) > 1.0 for rows in changes)
     return False
+
+
+def _edges_a_time(edge_s: FloatArray) -> float:
+    """Return how many edges of one column have each time, in the mean; 1 where few share theirs."""
+    shared = int(np.count_nonzero(np.diff(edge_s) == 0.0))
+    return edge_s.size / (edge_s.size - shared) if shared > _MOST_SHARED * edge_s.size else 1.0
 
 
 def _times(path: Path, header: Header, read: Times, count: int) -> FloatArray:

@@ -341,12 +341,19 @@ def _chosen(table: Table, names: Sequence[str], times: TimeColumns) -> tuple[lis
             kept.append(place)
         elif kind == TEXT:
             word = next((field for field in columns[place] if field and not is_number(field)), "")
-            left_out[shown] = f'it holds text, such as "{printable(word)[:30]}"'
+            left_out[shown] = f'it holds {_kind_of_text(word)}, such as "{printable(word)[:30]}"'
         elif kind in (DATE, DAY_TIME):
             left_out[shown] = "it holds dates or times of day beside the times of the rows"
         else:
             left_out[shown] = "name it with columns= (--columns)"
     return kept, left_out
+
+
+def _kind_of_text(word: str) -> str:
+    """Return what a field that is no number is: arrays come as numbers with blanks between, as of FMPy."""
+    parts = word.strip("[]()").split()
+    is_array = len(parts) > 1 and all(map(is_number, parts))
+    return "several numbers in a field (write each in a column of its own)" if is_array else "text"
 
 
 def _skipped(table: Table, names: Sequence[str]) -> int:
