@@ -378,6 +378,21 @@ def test_a_number_for_no_value_is_named_where_it_stands_apart(tmp_path):
     assert _remarks(tmp_path, [0, 9999] * 30) == ()
 
 
+@pytest.mark.parametrize(
+    ("first", "speed", "is_said"),
+    [("0,0", 1500.0, True), ("0,0", -1500.0, True), ("0,0", 0.0, False), ("0,1500", 1500.0, False)],
+)
+def test_a_first_row_of_zeros_is_named(tmp_path, first, speed, is_said):
+    """As libcosim may write one before the first step."""
+    path = tmp_path / "cosim.csv"
+    rows = "".join(f"{0.01 * k:.2f},{k % 3 - 1},{speed + 20.0 * np.sin(k)}\n" for k in range(1, 500))
+    path.write_text(f"Time,u [1 real input],n [2 real output]\n0,{first}\n{rows}")
+    with read_recording(path) as recording:
+        said = [one for one in recording.remarks if one.startswith("The first row is 0 in every column")]
+    assert bool(said) == is_said
+    assert not said or said[0].endswith("(--from 0.01).")
+
+
 def test_text_of_four_bytes_a_letter(tmp_path):
     path = tmp_path / "log.csv"
     path.write_text("time [s];n [rpm]\n0,0;1\n0,1;2\n", encoding="utf-32")

@@ -24,6 +24,7 @@ from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date
 from shaftprint.recording.readers.csv._edge_list import edge_channels
 from shaftprint.recording.readers.csv._header import Header, looks_like_a_table, read_header
 from shaftprint.recording.readers.csv._long_form import expect_no_frames
+from shaftprint.recording.readers.csv._marks import first_row_of_zeros
 from shaftprint.recording.readers.csv._row_clocks import sampled, scale_of_rows
 from shaftprint.recording.readers.csv._rows import LONGEST_LINE, Unpacked, unpack
 from shaftprint.recording.readers.imc._blocks import BEGIN as BEGIN_OF_IMC
@@ -228,6 +229,8 @@ def _with_more(recording: Recording, header: Header, done: Unpacked) -> Recordin
             f"Line {line}: the titles come again, the program was started anew; what is before it ends at second "
             f"{end_s:.9g} (--to {end_s:.9g})."
         )
+    zeros = first_row_of_zeros(list(recording.channels.values()))
+    remarks += [zeros] if zeros else []
     if began is None and first is not None and is_date(done.date_beside):
         day = cast("datetime", dates(recording.path, [done.date_beside])[0].item())
         began = (day.replace(tzinfo=UTC) if has_offset(done.date_beside) else day) - timedelta(seconds=first.start_s)

@@ -1,10 +1,12 @@
-"""Numbers that loggers write for no value, as -9999, where they come again and stand far from all others."""
+"""Numbers that are written for no value: as -9999 in some rows, as 0 in the first before anything was computed."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.recording._channel import Channel
 
 _SIZES = (
     99, 99.99, 888, 999, 999.25, 999.9, 999.99, 6999, 7999, 8888, 9999, 9999.9, 9999.99, 32767, 99999, 999999, 9999999,
@@ -13,6 +15,8 @@ _SIZES = (
 _MARKS = np.array([*_SIZES, *(-size for size in _SIZES), -32768.0, -2147483648.0, 65535.0])
 _KNOWN = frozenset(_MARKS.tolist())
 _FEWEST, _APART = 2, 3.0
+# So many rows show what a column is about.
+_ROWS = 100
 
 
 @dataclass(slots=True)
@@ -51,3 +55,27 @@ class Marks:
                     f"{self.high:.6g}); where it stands for no value, leave these fields empty."
                 )
         return ""
+
+
+def first_row_of_zeros(channels: Sequence[Channel]) -> str:
+    """Return that the first row is 0 in every column and far from what follows; empty where it is not.
+
+    A co-simulation may write one before its first step.
+    """
+    one_clock = len({(one.start_s, one.rate_hz) for one in channels}) == 1
+    if len(channels) < 2 or not one_clock or any(one.count < 2 for one in channels):
+        return ""
+    begins = [one.values(0, min(one.count, _ROWS)) for one in channels]
+    if any(begin[0] != 0.0 for begin in begins) or not any(_is_apart(begin[1:]) for begin in begins):
+        return ""
+    second_s = channels[0].start_s + 1.0 / channels[0].rate_hz
+    return (
+        "The first row is 0 in every column, far from what follows, as a co-simulation may write before its first "
+        f"step; leave it out (--from {second_s:.9g})."
+    )
+
+
+def _is_apart(values: FloatArray) -> bool:
+    """Return whether 0 is far from all of some values."""
+    low, high = float(np.fmin.reduce(values)), float(np.fmax.reduce(values))
+    return max(low, -high) > _APART * (high - low)
