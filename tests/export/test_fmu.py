@@ -89,6 +89,15 @@ def test_variables_are_physical(exported, tmp_path):
     assert tunable == expected | {"working_point.engine_speed", "working_point.shaft_torque"}
 
 
+def test_no_variable_of_fmi_3_is_an_array(exported, tmp_path):
+    """FMPy writes an array as one field of text, and other hosts read none."""
+    limits = limited("torque", curve=((-0.5, 0.6), (0.0, 1.0), (0.3, 0.9)), name="CURVE")
+    for number, chosen in enumerate((GAUGE[0], structure("GAUGE-PITCH"), limits)):
+        found = described(exported, tmp_path / f"tug{number}.fmu", chosen, version=3)
+        assert len(found.modelVariables) > 10
+        assert not any(variable.dimensions for variable in found.modelVariables)
+
+
 @pytest.mark.parametrize(("name", "reached"), [("CL1", {"shaft_torque"}), ("CL4", set())])
 def test_outputs_say_which_inputs_they_show_at_once(exported, tmp_path, name, reached):
     """A PI governor without delay gives torque at once; speed needs the inertia, and a delay lets nothing through."""

@@ -99,6 +99,20 @@ def test_times_before_the_date_of_the_file(tmp_path, first_s, shift_s):
         assert (recording.began.replace(tzinfo=None) - began).total_seconds() == pytest.approx(shift_s, abs=1e-5)
 
 
+def test_a_clock_that_is_set_back_is_a_jump(tmp_path):
+    times = TIMES.copy()
+    times[100:] -= 0.5
+    with asammdf.MDF(version="4.10") as file:
+        file.append([asammdf.Signal(np.arange(3000.0), times, name="n")])
+        file.save(tmp_path / "log.mf4", overwrite=True)
+    with read_recording(tmp_path / "log.mf4") as recording:
+        speed = recording.channel("n")
+        assert speed.values(0, speed.count).tolist() == list(range(3000))
+        (jump,) = speed.clock_jumps
+        assert (speed.rate_hz, jump.sample) == (pytest.approx(100.0), 100)
+        assert jump.jump_s == pytest.approx(-0.5, abs=0.011)
+
+
 @pytest.mark.parametrize(
     ("text", "is_none", "is_none_of_a_list"),
     [
