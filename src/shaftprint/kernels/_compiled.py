@@ -9,6 +9,8 @@ from typing import Any
 
 from shaftprint.kernels._folder import private_folder
 
+# x / 0 is inf or nan, as with arrays, not an error that each division looks for: a quarter of the time of a ship
+_PLAIN_DIVISION = {"error_model": "numpy"}
 # one kernel is made from another, and several threads may ask for the same
 _MAKING = threading.RLock()
 
@@ -44,7 +46,7 @@ def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     ``options``: options of ``numba.njit``, without ``cache``: numba would look for a folder by itself, beside the
     source or in the user's home, take one that others can write, and raise where there is none.
     """
-    return lambda function: Kernel(function, options)
+    return lambda function: Kernel(function, {**_PLAIN_DIVISION, **options})
 
 
 def _make_what_it_calls(function: Any) -> None:

@@ -26,7 +26,7 @@ from shaftprint.kernels._compiled import compiled
 
 HOW = {"error_model": "numpy", "fastmath": {"contract"}, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 INNER, PLACED = njit(**HOW), njit(**HOW, forceinline=True)
-OUTER = compiled(error_model="numpy", fastmath={"contract"}, nogil=True)
+OUTER = compiled(fastmath={"contract"}, nogil=True)
 
 
 # written so, these are one instruction of the processor each, and the first of two equal ones

@@ -21,7 +21,7 @@ import numpy as np
 
 from shaftprint.kernels._compiled import compiled
 
-SHARED = compiled(error_model="numpy", fastmath={{"contract"}}, forceinline=True, no_cfunc_wrapper=True)
+SHARED = compiled(fastmath={{"contract"}}, forceinline=True, no_cfunc_wrapper=True)
 LANES = {LANES}
 FADED = {FADED!r}
 {", ".join(AT)} = range({len(AT)})

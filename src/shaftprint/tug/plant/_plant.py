@@ -62,7 +62,7 @@ FARTHEST_SHARE = 4.0
 it."""
 
 
-@compiled()
+@compiled(inline="always")
 def _on_curve(speed, speeds, torques):  # type: ignore[no-untyped-def]
     """Return the torque [N m] of a curve at a speed [rev/s], straight between its points and flat beyond them."""
     last = speeds.size - 1
@@ -142,16 +142,13 @@ def _engine_end(state, plant):  # type: ignore[no-untyped-def]
 
 
 @compiled(inline="always")
-def governor_rack(speed_s, integral, demand, plant, air=1.0):  # type: ignore[no-untyped-def]
+def _governor_rack(speed, integral, demand, lowest, highest, plant):  # type: ignore[no-untyped-def]
     """Return the rack that the governor asks for, before and after the limiter of the ECU.
 
-    ``air`` is the share of the full-load torque for which the boost gives air.
+    ``speed`` is that of the engine [rev/s], ``lowest`` and ``highest`` are the brake torques that it may give [N m].
     """
-    speed = plant.gear_ratio * speed_s
     gain = _scheduled(speed, plant.gain_exponent, plant)
     wanted = gain * plant.proportional_s * _felt(demand - speed, plant) + integral
-    lowest, highest = torque_limits(speed, plant)
-    highest *= air
     without_rack = plant.speed_slope_nm_s * speed + plant.rack_offset_nm
     rack_given = min(
         max(wanted, (lowest - without_rack) / plant.rack_slope_nm), (highest - without_rack) / plant.rack_slope_nm
@@ -167,12 +164,14 @@ def derivatives(  # type: ignore[no-untyped-def]
     speed_s, integral, rack, rack_rate, slipstream = state[0], state[1], state[2], state[3], state[4]
     engine_s = _engine_end(state, plant)
     speed = plant.gear_ratio * engine_s
-    wanted, rack_given = governor_rack(engine_s, integral, demand, plant, air)
+    # where the torque may go is looked up once for governor and engine: it is what takes the time
+    lowest, highest = torque_limits(speed, plant)
+    # the share of the full-load torque for which the boost gives air
+    highest *= air
+    wanted, rack_given = _governor_rack(speed, integral, demand, lowest, highest, plant)
     if plant.delay_s == 0.0:
         rack_delayed = rack_given
     unlimited = plant.speed_slope_nm_s * speed + plant.rack_slope_nm * rack + plant.rack_offset_nm
-    lowest, highest = torque_limits(speed, plant)
-    highest *= air
     brake = min(max(unlimited, lowest), highest)
     load = plant.propeller_nm_s2 * speed_s * abs(speed_s)
     way_rate = 0.0
