@@ -19,7 +19,8 @@ from shaftprint.models._structure import Structure
 STRONG, WEAK = 30.0, 0.03
 SPREAD = 1.5
 POINTS = 400
-SECANT_STEPS = 9
+# A function of the loop gain that is so near to zero is off by no more than its rounding.
+SECANT_STEPS, CLOSE = 9, 1e-13
 # Both ways to a margin must agree at the estimate.
 SAME = 1e-6
 SMALLEST_PHASE_RAD = -0.5 * np.pi
@@ -140,6 +141,8 @@ def _crossings(
     for _ in range(SECANT_STEPS):
         middle = low + (high - low) * below / (below - above)
         value = at(middle)
+        if np.all(np.abs(value) < CLOSE):
+            return rows, np.exp(middle)
         same = np.signbit(value) == np.signbit(below)
         low, high = np.where(same, middle, low), np.where(same, high, middle)
         # Illinois rule: the end that stays counts half, so that both ends close in.
