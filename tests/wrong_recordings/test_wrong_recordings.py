@@ -46,9 +46,9 @@ def test_the_recording_that_was_not_spoilt_is_trusted_and_right():
     expect_trusted_and_right(ONE_SPEED)
 
 
-@pytest.mark.parametrize("late_s", [0.1, pytest.param(0.3, marks=pytest.mark.wrong_recordings)])
+@pytest.mark.parametrize("late_s", [0.15, pytest.param(0.3, marks=pytest.mark.wrong_recordings)])
 def test_a_set_point_that_is_logged_late_costs_what_rests_on_its_clock_alone(late_s):
-    """All else is what it is without: where the latency stopped at nothing, 0.1 s pulled the delay margin by 35 %."""
+    """All else is what it is without: where the latency stopped at nothing, nothing was left to be trusted."""
     trial = clean(ONE_SPEED)[0]
     clock = ("t_sp", "t_d + t_sp")
     sound, late = fingerprint_of(trial), fingerprint_of(mutations.late(late_s, SET_POINT)(trial))
@@ -57,7 +57,7 @@ def test_a_set_point_that_is_logged_late_costs_what_rests_on_its_clock_alone(lat
         moved = late_s if one.name in clock else 0.0
         # its slow lines tell the slope of the set point, its noise is another at each moment
         assert one.value == pytest.approx(before.value - moved, abs=(1.0 if one.name == "c_set" else 0.05) * before.std)
-    assert set(sound.verdict.trusted) - set(late.verdict.trusted) == ({"t_d + t_sp"} if late_s > 0.2 else set())
+    assert set(sound.verdict.trusted) - set(late.verdict.trusted) == {"t_d + t_sp"}
     assert "t_sp" not in late.verdict.trusted
 
 

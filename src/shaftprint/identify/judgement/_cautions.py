@@ -5,11 +5,9 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
-from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import stated
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.judgement._evidence import Evidence, gain_reserve, loop_delay_s
-from shaftprint.identify.judgement._fit_reasons import late_set_points
 from shaftprint.identify.judgement._line_quality import crossings_rad_s
 from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._prior_contradictions import off_nominal, strange_priors
@@ -29,7 +27,6 @@ def cautions_of(evidence: Evidence, numbers: Mapping[str, Estimate], not_trusted
         *_perhaps_unstable(evidence),
         *_beyond_the_lines(evidence),
         *_scale_of_set_point(evidence),
-        *_below_nothing(evidence),
         *strange_priors(evidence.identification),
         *_too_good(evidence),
         *_unweighted(evidence),
@@ -106,16 +103,6 @@ def _scale_of_set_point(evidence: Evidence) -> list[str]:
         f"The scale of the set point, {one.name} = {stated(one.value, one.std, one.unit)}, is not that of its line: "
         "the lever bends, or its levels were others; it is counted in all numbers."
         for one in off_nominal(evidence.identification)
-    ]
-
-
-def _below_nothing(evidence: Evidence) -> list[str]:
-    """Return that the set point may have been logged late, where its latency is below nothing by chance or by that."""
-    return [
-        f"{one.name} = {stated(one.value, one.std, one.unit)} is below nothing: by chance, or the set point is logged "
-        "later than it acts; gains, delay of the loop and margins hold either way."
-        for one in evidence.identification.parameters
-        if one.role == ShipRole.SET_POINT_LATENCY and one.value < 0.0 and not late_set_points(evidence)
     ]
 
 

@@ -142,7 +142,7 @@ def _engine_end(state, plant):  # type: ignore[no-untyped-def]
 
 
 @compiled(inline="always")
-def _governor_rack(speed, integral, demand, lowest, highest, plant):  # type: ignore[no-untyped-def]
+def governor_rack(speed, integral, demand, lowest, highest, plant):  # type: ignore[no-untyped-def]
     """Return the rack that the governor asks for, before and after the limiter of the ECU.
 
     ``speed`` is that of the engine [rev/s], ``lowest`` and ``highest`` are the brake torques that it may give [N m].
@@ -168,7 +168,7 @@ def derivatives(  # type: ignore[no-untyped-def]
     lowest, highest = torque_limits(speed, plant)
     # the share of the full-load torque for which the boost gives air
     highest *= air
-    wanted, rack_given = _governor_rack(speed, integral, demand, lowest, highest, plant)
+    wanted, rack_given = governor_rack(speed, integral, demand, lowest, highest, plant)
     if plant.delay_s == 0.0:
         rack_delayed = rack_given
     unlimited = plant.speed_slope_nm_s * speed + plant.rack_slope_nm * rack + plant.rack_offset_nm
