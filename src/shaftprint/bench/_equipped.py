@@ -6,6 +6,7 @@ from types import MappingProxyType
 
 from shaftprint.bench._begun import begun
 from shaftprint.bench._composed import composed
+from shaftprint.bench._sensors import behind_sensors, priors_of_sensors, stated_sensors
 from shaftprint.catalogue._drives import DRIVES, SIGNAL_UNITS
 from shaftprint.catalogue._linear_drives import along_a_line, unit_along
 from shaftprint.catalogue._shipped import shipped_structure
@@ -75,8 +76,10 @@ def equipped(drive: Drive, *, own: Structure | None = None) -> EquippedDrive:
     wanted = {one.name: units.get(one.name, one.unit) for one in drive.signals}
     return EquippedDrive(
         drive=drive,
-        structure=structure,
-        priors=MappingProxyType({one.name: Prior(one.value, one.std) for one in drive.known if one.std > 0.0}),
+        structure=behind_sensors(structure, stated_sensors(drive)),
+        priors=MappingProxyType(
+            {one.name: Prior(one.value, one.std) for one in drive.known if one.std > 0.0} | priors_of_sensors(drive)
+        ),
         factors=MappingProxyType({one.name: _factor(drive, one, wanted[one.name]) for one in drive.signals}),
         units=MappingProxyType(wanted),
     )

@@ -11,6 +11,7 @@ from shaftprint.bench._assumed_yielding import assumed_yielding
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._former_states import start_by_names_of_today
 from shaftprint.bench._hold import input_way
+from shaftprint.bench._late_outputs import late_outputs
 from shaftprint.bench._per_record import free_parameters, idle_labels, own_priors
 from shaftprint.bench._record_reasons import REQUIREMENTS, held_outputs, large_offsets, starts_in_motion
 from shaftprint.bench._search import AGREE, search_drive
@@ -118,6 +119,7 @@ def identify_drive(
     remarks = [remark for record in records for remark in record.remarks]
     in_motion = tuple(starts_in_motion(one, fit))
     reasons = (
+        *late_outputs(one, fit, records, settings=settings, time=time, drawn=ByMagnitude()),
         *alone(agreeing, fit.settings.starts),
         *held_outputs(one, records),
         *way.reasons,

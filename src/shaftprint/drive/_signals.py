@@ -25,6 +25,14 @@ class Signal(Settings):
     most of what has a zero at rest, and the zero of an angle, a way or a temperature is anywhere."""
     reversed: bool = False
     """Of an output: whether the channel counts the other way round than the structure does."""
+    latency_s: NotNegativeNumber | None = None
+    """Of an output: time by which the sensor shows it late [s]; 0 if not given."""
+    latency_std_s: PositiveNumber | None = None
+    """Standard deviation of that time [s]: with it the latency is found with the other numbers."""
+    lag_s: PositiveNumber | None = None
+    """Of an output: time constant of a filter of first order in sensor or logger [s]; none if not given."""
+    lag_std_s: PositiveNumber | None = None
+    """Standard deviation of that time constant [s]: with it the lag is found with the other numbers."""
     lowest: Number | None = None
     """Lowest value that a planned test may ask for or lead to, in the unit."""
     highest: Number | None = None
@@ -36,6 +44,8 @@ class Signal(Settings):
     def _in_order(self) -> Self:
         if self.lowest is not None and self.highest is not None and not self.lowest < self.highest:
             raise ValueError(f"expected lowest below highest, found {self.lowest:g} and {self.highest:g}.")
+        if self.lag_std_s is not None and self.lag_s is None:
+            raise ValueError("expected lag_s beside lag_std_s, found none: state what it is about.")
         return self
 
 
