@@ -28,7 +28,7 @@ def one_pick_up(**fields):
     return VESSEL.model_copy(update={"sensors": VESSEL.sensors.model_copy(update={"speed": (speed,)})})
 
 
-def reasons_of(vessel, test, true_rpm, *, load=1.0, of_speed=1.0, of_torque=1.0, inertia_std=None):
+def reasons_of(vessel, test, true_rpm, *, load=1.0, of_speed=1.0, of_torque=1.0, inertia_std=None, rate_hz=None):
     """Reasons of a ship that runs at a true speed under a load, shown by factors too large."""
     campaign = CAMPAIGNS[test]
     shown = WorkingPoint(
@@ -41,7 +41,12 @@ def reasons_of(vessel, test, true_rpm, *, load=1.0, of_speed=1.0, of_torque=1.0,
     )
     inertia = ScaleEvidence(log=np.log(of_torque / of_speed), std=inertia_std or 1.0, of_speed=-1.0, of_torque=1.0)
     return scale_reasons(
-        shown, vessel, campaign, levels_rpm=[true_rpm * of_speed], of_fit={"I_dn": inertia} if inertia_std else {}
+        shown,
+        vessel,
+        campaign,
+        levels_rpm=[true_rpm * of_speed],
+        of_fit={"I_dn": inertia} if inertia_std else {},
+        rate_hz=rate_hz,
     )
 
 
@@ -61,6 +66,15 @@ def test_the_count_that_would_fit_is_told():
     assert reason.sentence.endswith("pulses_per_revolution of PTM_e: 2 is stated, 1 would fit.")
     (reason,) = reasons_of(one_pick_up(), "short", RPM, of_speed=0.5)
     assert "as on the camshaft of a four-stroke engine" in reason.sentence
+
+
+@pytest.mark.parametrize("vessel", [VESSEL, one_pick_up()], ids=["three pick-ups", "one"])
+def test_a_rate_that_is_half_the_loggers_is_no_count(vessel):
+    """The logger takes 2000 samples a second: read as 1000, pulses come half as often."""
+    (reason,) = reasons_of(vessel, "12min", 1361.37, of_speed=0.5, rate_hz=1000.0)
+    assert reason.sentence.endswith("with which the speed fits: read it with --sample-rate 2000.")
+    (reason,) = reasons_of(vessel, "12min", 1361.37, of_speed=0.5, rate_hz=2000.0)
+    assert "--sample-rate" not in reason.sentence
 
 
 def test_a_pick_up_of_the_other_shaft_is_named():
@@ -197,7 +211,9 @@ def point_at(rpm, load=1.0):
 def test_a_propeller_of_another_diameter_is_named_with_the_one_that_fits():
     """2.4 m in place of 2.1: the file expects (8 / 7)^5 = 1.95 times the torque, at every level of the test."""
     legs = [SimpleNamespace(name=f"{rpm:g}", working_point=point_at(rpm)) for rpm in (1361.37, 900.0)]
-    signals = SimpleNamespace(working_point=legs[0].working_point, levels_rpm=(1361.37, 900.0), legs=legs)
+    signals = SimpleNamespace(
+        working_point=legs[0].working_point, levels_rpm=(1361.37, 900.0), legs=legs, rate_hz=2000.0
+    )
     (told,) = contradictions((), card_of(8 / 7), signals=signals, campaign=CAMPAIGNS["12min"])
     # 1725 N m at 1183.8 rpm are 2281 at 1361.37, and ln 1.95 is 4.4 of 15 % with 1 % of the gauge
     assert "expected a torque around 4448 N m at 1361 rpm" in told

@@ -126,13 +126,16 @@ def _of_scales(
             campaign,
             levels_rpm=signals.levels_rpm,
             legs={leg.name: leg.working_point for leg in signals.legs},
+            rate_hz=signals.rate_hz,
         )
         points = (signals.working_point, *(leg.working_point for leg in signals.legs))
         beside = torque_beside_file(tuple(dict.fromkeys(points)), vessel)
         reasons = reasons or _of_zero(points, vessel)
     else:
         point = _mean_point(reports, vessel)
-        reasons = () if point is None else scale_reasons(point, vessel)
+        rates_hz = {report.channel: report.rate_hz for report in reports}
+        rate_hz = rates_hz.get(vessel.sensors.speed[0].channel)
+        reasons = () if point is None else scale_reasons(point, vessel, rate_hz=rate_hz)
     # a speed that is miscounted makes another torque of the same
     return tuple(reason.sentence for reason in reasons) or ((beside,) if beside else ())
 

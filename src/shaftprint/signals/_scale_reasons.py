@@ -53,6 +53,7 @@ def scale_reasons(
     legs: Mapping[str, "WorkingPoint"] | None = None,
     of_fit: Mapping[str, ScaleEvidence] | None = None,
     beside: Mapping[str, float] | None = None,
+    rate_hz: float | None = None,
 ) -> tuple[Reason, ...]:
     """Return a reason where the speed is off by one factor, or the torque is that of another shaft.
 
@@ -60,7 +61,8 @@ def scale_reasons(
     says which speed was asked for; None where nobody says what was done in the recording. ``levels_rpm``: mean engine
     speeds that were governed [rpm]. ``legs``: mean speed and torque of each leg, by its name: one factor for all of
     them is not all that can be wrong. ``of_fit``: what a fit tells of the scales besides, by its name. ``beside``:
-    found over expected of what follows from them, by name, to be told.
+    found over expected of what follows from them, by name, to be told. ``rate_hz``: samples a second at which the
+    recording was read.
     """
     further = of_fit or {}
     evidence = (*scale_evidence(point, vessel, campaign), *further.values())
@@ -98,7 +100,7 @@ def scale_reasons(
             where=vessel.sensors.speed[0].channel,
             sentence=(
                 f"The speed is in doubt: it seems to be {doubt.words} the true one, {found_rpm:.4g} rpm where {torque} "
-                f"{asked_rpm:.4g} rpm{followers}; {what_to_check(doubt.factor, vessel)}."
+                f"{asked_rpm:.4g} rpm{followers}; {what_to_check(doubt.factor, vessel, rate_hz)}."
             ),
         ),
     )
@@ -255,8 +257,17 @@ def _told(beside: Mapping[str, float], ending: str) -> str:
     return f", with {names} {factors} times what the vessel file expects,{ending}"
 
 
-def what_to_check(factor: float, vessel: "Vessel") -> str:
-    """Return which field of the vessel file would make a speed right that is shown so many times too large."""
+def what_to_check(factor: float, vessel: "Vessel", rate_hz: float | None = None) -> str:
+    """Return which field of the vessel file would make a speed right that is shown so many times too large.
+
+    ``rate_hz``: samples a second at which the recording was read: pulses come as often as samples are said to.
+    """
+    stated_hz = None if vessel.logger is None else vessel.logger.sample_rate_hz
+    if stated_hz is not None and rate_hz is not None and abs(rate_hz / stated_hz / factor - 1.0) < _LIKE_GEAR / 2.0:
+        return (
+            f"the recording was read at {rate_hz:g} Hz, and sample_rate_hz of the logger is {stated_hz:g} Hz in the "
+            f"vessel file, with which the speed fits: read it with --sample-rate {stated_hz:g}"
+        )
     sensors, ratio = vessel.sensors.speed, vessel.gearbox.ratio
     # pick-ups that differ by more would have been refused: one of them may be off by less
     if len(sensors) > 1 and abs(factor - 1.0) > LARGEST_DIFFERENCE:
