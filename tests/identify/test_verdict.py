@@ -270,6 +270,19 @@ def test_margins_beyond_the_lines_are_extrapolated(draw):
     assert f"the good spectral lines reach from 0.028 to {2 * np.pi * LINES_HZ[19]:.2g} rad/s" in told
 
 
+def test_lines_of_all_legs_are_asked_where_the_margins_lie(draw):
+    """The slow lines of one leg leave the crossing to the fast ones of the other."""
+    parts = [
+        draw(AMPLE, seed=seed, frequency_hz=LINES_HZ[of], names=DENSE["names"][of])
+        for seed, of in ((7, slice(0, 16)), (8, slice(14, 24)))
+    ]
+    pair = [(structure("CL4"), one) for one in parts]
+    fit = identify_jointly(pair, rng=np.random.default_rng(1), settings=Settings(starts=15))
+    verdict = assess(fit, requirements=Requirements(largest_std=5.0))
+    assert verdict.trustworthy
+    assert not any("extrapolated" in one for one in verdict.cautions)
+
+
 # ---- the numbers ----
 
 

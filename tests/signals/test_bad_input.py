@@ -9,6 +9,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.recording import Recording
 from shaftprint.signals import inspect_channels, prepare_signals
+from shaftprint.signals._contradictions import contradictions
 from shaftprint.signals._scale_reasons import torque_beside_file
 
 
@@ -396,6 +397,17 @@ def test_the_unit_of_a_set_point_is_named_where_another_fits(spoiled, vessel, ca
 def test_a_table_that_does_not_reach_the_working_point(ship, vessel, campaign):
     fields = {"table_rpm": [[-3.0, 670.0], [0.0, -80.0]]}
     refused(ship.recording(), with_set_point(vessel, **fields), campaign, "expected table_rpm of the vessel file to re")
+
+
+def test_a_lever_whose_table_is_turned_round_is_told_first(ship, vessel, campaign):
+    """The speed falls by 250.8 rpm a volt; the table has as much where it rises, and the same speed at -5 V."""
+    turned = with_set_point(vessel, table_rpm=[[-10.0, -83.4], [0.0, 2424.6]])
+    recording = ship.recording()
+    signals = prepare_signals(recording, turned, campaign)
+    said = "expected a speed that rises with it, as table_rpm of sensors.set_point says, found one that falls; turn"
+    assert any(said in finding for finding in signals.findings)
+    reports = inspect_channels(recording, turned)
+    assert said in contradictions(reports, turned, signals=signals, campaign=campaign)[0]
 
 
 def test_a_table_that_asks_for_another_speed_is_a_finding(ship, vessel, campaign):

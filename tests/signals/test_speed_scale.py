@@ -212,7 +212,11 @@ def test_a_propeller_of_another_diameter_is_named_with_the_one_that_fits():
     """2.4 m in place of 2.1: the file expects (8 / 7)^5 = 1.95 times the torque, at every level of the test."""
     legs = [SimpleNamespace(name=f"{rpm:g}", working_point=point_at(rpm)) for rpm in (1361.37, 900.0)]
     signals = SimpleNamespace(
-        working_point=legs[0].working_point, levels_rpm=(1361.37, 900.0), legs=legs, rate_hz=2000.0
+        working_point=legs[0].working_point,
+        levels_rpm=(1361.37, 900.0),
+        legs=legs,
+        rate_hz=2000.0,
+        calibration=SimpleNamespace(slope_rev_s_per_v=-4.18),
     )
     (told,) = contradictions((), card_of(8 / 7), signals=signals, campaign=CAMPAIGNS["12min"])
     # 1725 N m at 1183.8 rpm are 2281 at 1361.37, and ln 1.95 is 4.4 of 15 % with 1 % of the gauge

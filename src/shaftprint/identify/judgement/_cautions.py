@@ -85,8 +85,7 @@ def _beyond_the_lines(evidence: Evidence) -> list[str]:
     """Return that the loop decides on its stability where there are no lines."""
     if evidence.identification.objective.others:
         return []
-    experiment = evidence.identification.objective.experiments[0]
-    omega = experiment.s.imag[np.any(evidence.good[0], axis=0)]
+    omega = evidence.good_omega_rad_s
     outside = [c for c in crossings_rad_s(evidence.identification) if not omega[0] <= c <= omega[-1]]
     if not outside:
         return []

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray
+from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._line_quality import good_channels
 from shaftprint.identify.judgement._requirements import Requirements
@@ -64,6 +64,13 @@ class Evidence:
     def good_lines(self) -> int:
         """Number of fitted lines of which some channel is good."""
         return sum(int(np.any(good, axis=0).sum()) for good in self.good)
+
+    @property
+    def good_omega_rad_s(self) -> FloatArray:
+        """Frequencies of these lines, of all responses [rad/s], in order, shape (good lines,)."""
+        experiments = self.identification.objective.experiments
+        each = [one.s.imag[np.any(good, axis=0)] for one, good in zip(experiments, self.good, strict=True)]
+        return np.sort(np.concatenate(each))
 
     @property
     def good_data(self) -> int:

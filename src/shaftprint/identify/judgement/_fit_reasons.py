@@ -1,7 +1,5 @@
 """The reasons for which a fit is not trustworthy, each a sentence where it holds and nothing where it does not."""
 
-import numpy as np
-
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import stated
 from shaftprint.identify.fit._identification import Identification
@@ -48,8 +46,7 @@ def gap_where_it_matters(evidence: Evidence) -> str:
     if evidence.identification.objective.others:
         # records tell of more frequencies than the lines do
         return ""
-    good = np.any(evidence.good[0], axis=0)
-    gap = gap_at_crossing(evidence.identification, good, evidence.requirements)
+    gap = gap_at_crossing(evidence.identification, evidence.good_omega_rad_s, evidence.requirements)
     if gap is None:
         return ""
     low, high = gap

@@ -86,13 +86,12 @@ def crossings_rad_s(identification: Identification) -> tuple[float, ...]:
 
 
 def gap_at_crossing(
-    identification: Identification, good: BoolArray, requirements: Requirements
+    identification: Identification, omega: FloatArray, requirements: Requirements
 ) -> tuple[float, float] | None:
     """Return the frequencies [rad/s] between which no good line shows a crossing of the loop gain; None where none are.
 
-    ``good``: which fitted lines of the first response are good, shape (lines,).
+    ``omega``: frequencies of the good lines of all responses [rad/s], in order, shape (lines,).
     """
-    omega = identification.objective.experiments[0].s.imag[good]
     for crossing in crossings_rad_s(identification):
         above = int(np.searchsorted(omega, crossing))
         if 0 < above < omega.size and omega[above] > requirements.largest_spacing * omega[above - 1]:

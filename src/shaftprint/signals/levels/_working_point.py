@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 _NEAR_V = 0.25
 # A governor with droop runs this much slower than it is asked to.
 _ASKED = 0.1
+# A table is straight over so much [V].
+_NEAR_V = 0.01
 # Standard deviations of a measured slope that are no contradiction to the one that is stated.
 _SIGMAS = 4.0
 
@@ -145,6 +147,19 @@ def expect_driving(point: WorkingPoint, vessel: "Vessel") -> None:
             f"{in_nm(vessel.working_point.turning * point.shaft_torque_nm)}; {sensor.sign_words} in the vessel file, "
             f"or correct zero_nm there, or {direction_words(vessel)}."
         )
+
+
+def turned_lever(point: WorkingPoint, calibration: "SetPointCalibration", vessel: "Vessel") -> str:
+    """Return that the speed rises where the lever's table falls, or the other way round; empty where both agree."""
+    sensor = vessel.sensors.set_point
+    ends = [sensor.asked_rpm(point.set_point_v + change) for change in (-_NEAR_V, _NEAR_V)]
+    if ends[0] is None or ends[1] is None or (ends[1] - ends[0]) * calibration.slope_rev_s_per_v >= 0.0:
+        return ""
+    ways = ("rises", "falls") if ends[1] < ends[0] else ("falls", "rises")
+    return (
+        f"channel {sensor.channel}: expected a speed that {ways[1]} with it, as table_rpm of sensors.set_point says, "
+        f"found one that {ways[0]}; turn the speeds of table_rpm round, or a plan moves the lever the wrong way."
+    )
 
 
 def expect_asked_speed(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]:
