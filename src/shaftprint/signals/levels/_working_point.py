@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 _NEAR_V = 0.25
 # A governor with droop runs this much slower than it is asked to.
 _ASKED = 0.1
-# A table is straight over so much [V].
-_NEAR_V = 0.01
 # Standard deviations of a measured slope that are no contradiction to the one that is stated.
 _SIGMAS = 4.0
 
