@@ -45,6 +45,14 @@ def test_whether_the_ship_has_changed_is_said_first(run, demo, later):
     assert two.startswith("Has the ship changed, 2026? No: ")
 
 
+def test_of_two_ships_it_is_not_said_that_one_has_changed(run, demo, later):
+    other = read_fingerprint(later)
+    conditions = other.conditions.model_copy(update={"vessel": "Ferry of four"})
+    write_fingerprint(other.model_copy(update={"conditions": conditions}), later)
+    first, *_ = run("compare", demo[0], later).output.splitlines()
+    assert first.startswith("Of Stan Tug 1205, port and Ferry of four: is later other than demo? Yes: more inertia")
+
+
 def test_each_number_may_be_judged_by_itself(run, demo, later):
     result = run("compare", demo[0], later, "--each-number")
     assert result.output.startswith("Has the ship changed? Yes: I_dn by 50.0 %")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from pathlib import Path, PurePath
 
 import click
 
@@ -88,8 +88,11 @@ def command(
         words = _judged(apart[name], along.get(name), first.noun)
         if doubtful:
             words = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
-        asked = f"Is {name} other than {first_name}" if are_two_lines(first, other) else f"Has the {first.noun} changed"
-        answer(f"{asked}{f', {name}' if len(others) > 1 else ''}? {words}")
+        lines = are_two_lines(first, other)
+        two = "" if lines or first.title == other.title else f"Of {first.title} and {other.title}: "
+        other_than = f"{'is' if two else 'Is'} {name} other than {first_name}"
+        asked = other_than if two or lines else f"Has the {first.noun} changed"
+        answer(f"{two}{asked}{f', {name}' if len(others) > 1 else ''}? {words}")
     give("differences", apart)
     give("causes", along)
     give("conditions", {name: fingerprint.tested for name, fingerprint in named.items()})
@@ -139,7 +142,7 @@ def _short_names(places: tuple[Path, ...]) -> tuple[str, ...]:
     parts = [_parts(path) for path in places]
     counts = [1] * len(parts)
     while True:
-        names = ["/".join(path_parts[-count:]) for path_parts, count in zip(parts, counts, strict=True)]
+        names = [PurePath(*path_parts[-count:]).as_posix() for path_parts, count in zip(parts, counts, strict=True)]
         rows = zip(names, parts, counts, strict=True)
         alike = [names.count(name) > 1 and count < len(path_parts) for name, path_parts, count in rows]
         if not any(alike):
