@@ -122,6 +122,7 @@ def test_json_is_whole_where_the_wish_cannot_be_met(run, tmp_path):
         (("--wish", "t_d=10ms"), "expected a number of the line"),
         (("--limit", "sett-point=1V"), "Did you mean set-point?"),
         (("--limit", "rate=600rpm"), "expected a positive number in rpm/s such as rate=600rpm/s"),
+        (("--limit", "set-point=100"), "expected a unit behind 100, V or rpm or mA or % or counts, such as"),
         (("--limit", "torque=-5Nm"), "expected a positive number in Nm or N m or kNm"),
         (("--limit", "full-scale=5kN"), "expected a positive number in Nm or N m or kNm such as full-scale=10kNm"),
         (("--limit", "ripple=60Nm"), "expected a positive number in % or no unit such as ripple=60%"),

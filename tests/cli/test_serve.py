@@ -1,5 +1,7 @@
 """``serve --open``: the first page comes up in the browser, of a store that is made where there is none."""
 
+import socket
+
 import pytest
 
 from shaftprint.cli.commands import _serve
@@ -34,6 +36,17 @@ def test_without_the_word_no_browser_is_opened_and_no_store_is_made(run, tmp_pat
     run("serve", "--store", str(tmp_path / "yard.db"), "--state", tmp_path / "server")
     assert opened == []
     assert not (tmp_path / "yard.db").exists()
+
+
+def test_an_address_that_another_program_has_is_told_with_another(run, tmp_path):
+    create_store(str(tmp_path / "yard.db")).close()
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        words = ("--store", str(tmp_path / "yard.db"), "--state", tmp_path / "server", "--listen", f"127.0.0.1:{port}")
+        result = run("serve", *words)
+    assert result.exit_code == 1
+    assert f"--listen 127.0.0.1:{port}: expected an address of this computer that is free" in result.stderr
+    assert f"such as --listen 127.0.0.1:{port % 65535 + 1}." in result.stderr
 
 
 def test_all_that_is_missing_is_named_at_once(run, tmp_path, monkeypatch):

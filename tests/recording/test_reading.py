@@ -98,6 +98,11 @@ def test_a_recording_without_channels_says_so(path):
         ("log.bin", b"\1\2\3\0", "export it as CSV, MATLAB or MDF 4 from the program that wrote it"),
         ("log.ubx", b"\xb5b\1\7\x5c\0", r"it is UBX of a u-blox receiver: write time and gSpeed \[mm/s\]"),
         ("log.psdata", b"\1\2\3\0", "PicoScope or PicoLog: save it as CSV or MATLAB 4"),
+        (
+            "mine.toml",
+            b"[vessel]\nname = 'Meander'\n",
+            "it is a file of settings, as of a vessel, a campaign or a drive",
+        ),
         ("log.acme", b"\1\2\3\0", "export it as CSV, MATLAB or MDF 4 from the program that wrote it"),
     ],
 )

@@ -61,6 +61,8 @@ def limit_of(text: str) -> StatedLimit:
     number, unit = number_and_unit(stated)
     if number is None or not number > 0.0 or unit not in kind.units:
         units = " or ".join(one or "no unit" for one in kind.units)
+        if number is not None and number > 0.0 and not unit:
+            raise click.BadParameter(f"expected a unit behind {number:g}, {units}, such as {kind.example}, found none.")
         raise click.BadParameter(f"expected a positive number in {units} such as {kind.example}, found {text!r}.")
     return StatedLimit(name=name.strip(), value=number * kind.units[unit], unit=unit)
 

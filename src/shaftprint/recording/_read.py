@@ -109,7 +109,8 @@ def _the_reader(path: Path, readers: Sequence[Reader] | None) -> Reader:
         if own is not None:
             return own
         readers = _all.READERS
-    claims = [reader for reader in readers if reader.is_mine(path)]
+    # a vessel file in the place of the recording is text, and no table
+    claims = [reader for reader in readers if reader.is_mine(path) and path.suffix.lower() != ".toml"]
     if len(claims) == 1:
         return claims[0]
     if claims:

@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import os
+import socket
 from collections.abc import AsyncIterator, Callable, Iterator
 from datetime import datetime
 from typing import Final
@@ -10,12 +11,13 @@ from typing import Final
 import anyio.to_thread
 import uvicorn
 
+from shaftprint.errors import ServerError
 from shaftprint.web._background import keep_judging, keep_making
 from shaftprint.web._door import Door, patient_protocol
 from shaftprint.web._guard import Guard
 from shaftprint.web._routes import application
 from shaftprint.web._service import Service, utc_now
-from shaftprint.web._settings import Serving
+from shaftprint.web._settings import Listen, Serving
 from shaftprint.web._telling import keep_alerting
 from shaftprint.web._workers import keep_workers
 
@@ -23,6 +25,7 @@ _THREADS: Final = 4
 _MOST_HEAD: Final = 16 * 1024
 _MOST_CONNECTIONS: Final = 200
 _IDLE_S: Final = 15
+_LAST_PORT: Final = 65535
 
 
 def guarded(service: Service) -> Guard:
@@ -48,10 +51,27 @@ def serve(serving: Serving, *, begun: Callable[[str], None], now: Callable[[], d
     ShaftprintError
         If the store, the users or the server's own folder cannot be used.
     """
+    _expect_free(serving.listen)
     # what it and the processes beside it make is for nobody else to read, from the first byte on
     os.umask(0o077)
     service = Service.begun(serving, now=now)
     asyncio.run(_serve(service, begun))
+
+
+def _expect_free(listen: Listen) -> None:
+    """Raise ServerError if another program listens there, or the address is not of this computer."""
+    with socket.socket(socket.AF_INET6 if ":" in listen.host else socket.AF_INET) as trial:
+        if os.name == "posix":
+            # what has just ended leaves its port for a while
+            trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            trial.bind((listen.host, listen.port))
+        except OSError as refusal:
+            raise ServerError(
+                f"--listen {listen.host}:{listen.port}: expected an address of this computer that is free, found one "
+                f"that is not ({refusal.strerror or refusal}); end the program that listens there, or name another "
+                f"port, such as --listen {listen.host}:{listen.port % _LAST_PORT + 1}."
+            ) from None
 
 
 async def _serve(service: Service, begun: Callable[[str], None]) -> None:

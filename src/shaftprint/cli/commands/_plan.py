@@ -57,9 +57,11 @@ _OF_SHIPS = (
     cls=SectionedCommand,
     example="shaftprint plan --vessel mine.toml --within 12min --wish t_d=20% --wish K_p=6% -o my_plan",
     sections={
-        "Needed (a ship: --vessel; a drive: --drive)": ("--vessel", "--output", "--drive"),
+        "Needed (a ship: --vessel and --limit set-point; a drive: --drive)": (
+            "--vessel", "--limit", "--output", "--drive",
+        ),
         "Test": ("--within", "--wish", "--shortest", "--staircase", "--name"),
-        "Lever and limits": ("--rpm-per-volt", "--offset", "--limit", "--speeds"),
+        "Lever and limits": ("--rpm-per-volt", "--offset", "--speeds"),
         "What is known of the ship": (
             "--after", "--noise-from", "--noise-campaign", "--structure", "--prior", "--free", "--hold", "--value",
         ),

@@ -68,6 +68,8 @@ _BY_NAMES = {
 _BY_ENDING = {
     (".xlsx", ".xlsm", ".xls", ".ods"): f"it is a spreadsheet: {_TABLE}",
     (".zip",): _ARCHIVE,
+    (".toml",): "it is a file of settings, as of a vessel, a campaign or a drive: name the recording first, and this "
+    "one behind --vessel, --campaign or --drive",
     (".tdm", ".tdx"): "National Instruments' TDM: in DIAdem or LabVIEW save it as TDMS",
     (".lms", ".ldsf", ".sdf"): "Simcenter Testlab: export time data as MATLAB or as UFF 58",
     (".raw",): "imc in a form that is not read: in FAMOS or imc STUDIO save it as .dat, MATLAB or MDF 4",
