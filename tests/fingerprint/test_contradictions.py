@@ -31,6 +31,10 @@ def _numbers(factor, vessel):
 
 
 def _reasons(factor, vessel):
+    return _reasons_of(_numbers(factor, vessel), vessel, factor)
+
+
+def _reasons_of(numbers, vessel, factor=1.0):
     # 1.15 times the speed of the working point: by the law of the propeller 1.15^2 of its torque
     point = WorkingPoint(
         engine_speed_rev_s=1.15 * rev_s_from_rpm(vessel.working_point.engine_speed_rpm),
@@ -40,8 +44,8 @@ def _reasons(factor, vessel):
         set_point_v=-5.7,
         load_std=0.0,
     )
-    signals = SimpleNamespace(working_point=point, levels_rpm=(), legs=())
-    return contradictions(_numbers(factor, vessel), signals, vessel, CAMPAIGN)
+    signals = SimpleNamespace(working_point=point, levels_rpm=(), legs=(), rate_hz=2000.0)
+    return contradictions(numbers, signals, vessel, CAMPAIGN)
 
 
 def test_a_gauge_that_shows_too_little_is_told_by_the_torque_over_the_square_of_the_speed():
@@ -78,7 +82,9 @@ def _of_diameter(diameter_m, *, load=1.0, inertia=1.0):
         replace(coefficient, value=found, std=0.01 * found),
         replace(behind, value=inertia * behind.value, expected_std=1.0),
     )
-    return contradictions(numbers, SimpleNamespace(working_point=point, levels_rpm=(), legs=()), vessel, CAMPAIGN)
+    return contradictions(
+        numbers, SimpleNamespace(working_point=point, levels_rpm=(), legs=(), rate_hz=2000.0), vessel, CAMPAIGN
+    )
 
 
 @pytest.mark.parametrize("diameter_m", [0.9, 1.2, 10.5])
@@ -99,3 +105,12 @@ def test_a_fouled_propeller_and_a_diameter_within_its_reach_speak_against_nothin
 def test_torque_and_inertia_that_are_off_alike_are_the_gauge():
     (reason,) = _of_diameter(1.05, load=0.5, inertia=0.5)
     assert reason.kind == "gauge scale"
+
+
+@pytest.mark.parametrize(("found", "std", "told"), [(0.15, 0.21, True), (1.7, 0.2, True), (6.0, 0.3, False)])
+def test_a_torque_without_the_inertia_behind_the_gauge_is_told(found, std, told):
+    """A propeller of 17 kg m2 by the file: a tenth of it is no propeller, a third may be a file of another ship."""
+    coefficient, inertia = (replace(one, value=one.expected, std=0.01 * one.expected) for one in _numbers(1.0, TUG))
+    reasons = _reasons_of((coefficient, replace(inertia, value=found, std=std, expected_std=1.6)), TUG)
+    assert [one.kind for one in reasons] == ["hidden inertia"] * told
+    assert all("shows next to no inertia behind the gauge" in one.sentence for one in reasons)

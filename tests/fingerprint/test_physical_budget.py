@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import physical_quantities
-from shaftprint.identify import Prior, Settings, identify, priors_from_vessel, refit
+from shaftprint.identify import Prior, Settings, identify, priors_from_vessel, profile, refit
 
 TESTS = 800
 # A standard deviation from so many tests is known to 2.5 %; three of them, and two percent that first order leaves.
@@ -115,3 +115,16 @@ def test_gauge_zero_share_is_the_offset_over_the_torque(fit, truth, vessel, work
 def test_a_slope_that_is_held_tells_nothing_of_the_gauge(fit, working_point, vessel):
     core = fit("OL1", {"tau_n": 0.39})
     assert "gauge zero share" not in [q.name for q in physical_quantities(core, working_point, vessel)]
+
+
+def test_what_is_a_multiple_of_a_parameter_has_its_interval(found, vessel, working_point):
+    """The gain is known to 30 % above and 5 % below, its gauge to 2 %: so is what it is in N m/rpm."""
+    gain = next(one for one in found.parameters if one.name == "K_p")
+    ends = replace(profile(found).intervals["K_p"], lower=0.95 * gain.value, upper=1.3 * gain.value)
+    intervals = {"K_p": ends}
+    shown = {q.name: q for q in physical_quantities(found, working_point, vessel, intervals=intervals)}
+    action = shown["governor proportional action"]
+    low, high = (end / action.value for end in action.interval_95)
+    assert 0.90 < low < 0.951
+    assert 1.299 < high < 1.33
+    assert shown["governor integral action"].interval_95 is None

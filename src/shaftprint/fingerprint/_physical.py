@@ -14,6 +14,7 @@ windows and the prior, and multiplies what is found, so that it cancels here (``
 made of it: there the wander of the load counts.
 """
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -22,11 +23,18 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._roles import ROLES, ShipRole
-from shaftprint.fingerprint._working_point_share import GAIN, LOAD_WANDER, shares_over_torque, shifts_of_working_point
+from shaftprint.fingerprint._working_point_share import (
+    GAIN,
+    LOAD_WANDER,
+    shares_over_torque,
+    shifts_of_working_point,
+    widened,
+)
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.likelihood._known import stated_by_vessel
-from shaftprint.identify.uncertainty._budget import Budget, budget
+from shaftprint.identify.uncertainty._budget import Budget, BudgetRow, budget
+from shaftprint.identify.uncertainty._profile import Interval
 from shaftprint.models._combination import Combination
 from shaftprint.models._structure import Structure
 from shaftprint.normalisation import Normalisation
@@ -37,6 +45,8 @@ if TYPE_CHECKING:
 
 PERCENT = 100.0
 IDEAL_SLOPE = 2.0
+# A number whose deviation is a smaller share of that of its parameter is told by what cancels in it.
+_OF_ONE = 0.8
 GAUGE_ZERO = "gauge zero share"
 """Name of the zero offset of the torque gauge over the working-point torque."""
 
@@ -70,7 +80,11 @@ def physical_numbers(
 
 
 def physical_quantities(
-    identification: Identification, working_point: "WorkingPoint", vessel: "Vessel", stated: Budget | None = None
+    identification: Identification,
+    working_point: "WorkingPoint",
+    vessel: "Vessel",
+    stated: Budget | None = None,
+    intervals: Mapping[str, Interval] | None = None,
 ) -> tuple[Estimate, ...]:
     """Return physical values with standard deviations, beside the values of the vessel file where it has them.
 
@@ -80,6 +94,8 @@ def physical_quantities(
         The fit, where it was made, and what was tested.
     stated
         The uncertainty budget with the physical numbers among its rows; made here when not given.
+    intervals
+        Profile-likelihood intervals by parameter: what is a multiple of one has its interval.
     """
     numbers = physical_numbers(identification, working_point, vessel)
     if stated is None:
@@ -89,12 +105,15 @@ def physical_quantities(
     quantities = []
     for item in numbers:
         row = stated.row(item.number.name)
+        interval, is_open = _interval_of_multiple(identification, item.number, row, intervals or {})
         quantities.append(
             Estimate(
                 name=row.name,
                 unit=row.unit,
                 value=row.value,
                 std=row.std,
+                interval_95=interval,
+                interval_open=is_open,
                 expected=item.expected,
                 expected_std=item.expected_std,
                 meaning=item.number.meaning,
@@ -102,6 +121,27 @@ def physical_quantities(
             )
         )
     return tuple(quantities)
+
+
+def _interval_of_multiple(
+    identification: Identification, number: Combination, row: BudgetRow, intervals: Mapping[str, Interval]
+) -> tuple[tuple[float, float] | None, tuple[bool, bool]]:
+    """Return the interval of a number that is a multiple of one parameter, and which ends are open.
+
+    It is as wide as the likelihood has that parameter; none where its deviation is another, for errors that cancel.
+    """
+    role = number.role
+    by_role = {one.role: one for one in identification.parameters if one.name in intervals}
+    found = by_role.get(role)
+    is_product = role is not None and role.rack_power and ShipRole.ENGINE_RACK_SLOPE in by_role
+    if found is None or role is None or role.physical is None or is_product or not found.value:
+        return None, (False, False)
+    factor, interval = row.value / found.value, intervals[found.name]
+    if row.std < _OF_ONE * abs(factor) * found.std:
+        return None, (False, False)
+    further = math.sqrt(max(row.std**2 - (factor * found.std) ** 2, 0.0))
+    is_open = (interval.lower_open, interval.upper_open)
+    return widened((factor * interval.lower, factor * interval.upper), row.value, further, is_open), is_open
 
 
 def _physical_forms(

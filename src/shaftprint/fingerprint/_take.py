@@ -116,10 +116,11 @@ def take_fingerprint(
     shifts = shifts_of_working_point(identification, main, rack_share, of_legs if main in of_legs else ())
     shifts |= shifts_of_speed_age(identification)
     stated = _budget(identification, signals.working_point, vessel, margins, shifts)
-    physical = (*physical_quantities(identification, signals.working_point, vessel, stated), *ship)
-    left_out = _left_out(identification)
     profiled = profile(identification, margins) if identification.is_likelihood else None
-    reported = _Reported(stated, {} if profiled is None else profiled.intervals)
+    intervals = {} if profiled is None else profiled.intervals
+    physical = (*physical_quantities(identification, signals.working_point, vessel, stated, intervals), *ship)
+    left_out = _left_out(identification)
+    reported = _Reported(stated, intervals)
     parameters = tuple(reported.quantity(e) for e in identification.parameters)
     combinations = tuple(reported.quantity(e) for e in identification.combinations)
     stated_conditions = conditions_stated(vessel, campaign.name, campaign.place, trial_conditions, tested_at)
@@ -133,7 +134,7 @@ def take_fingerprint(
         signal_to_noise=signal_to_noise,
         reasons=(*off, *reasons),
         further=[*physical, *margin, conditions.engine_speed, conditions.shaft_torque],
-        assumptions=assumptions_of(identification, vessel, margins, {} if profiled is None else profiled.intervals),
+        assumptions=assumptions_of(identification, vessel, margins, intervals),
         explained_share=explained_share,
     )
     return Fingerprint(
