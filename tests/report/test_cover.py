@@ -21,7 +21,8 @@ def answers(fingerprint, validations=()):
 
 
 def with_physical(fingerprint, name, **changes):
-    changed = [replace(q, **changes) if q.name == name else q for q in fingerprint.physical]
+    plain = {"interval_95": None, "interval_open": (False, False), **changes}
+    changed = [replace(q, **plain) if q.name == name else q for q in fingerprint.physical]
     return fingerprint.model_copy(update={"physical": tuple(changed)})
 
 

@@ -23,6 +23,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._roles import ROLES, ShipRole
+from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint._working_point_share import (
     GAIN,
     LOAD_WANDER,
@@ -47,6 +48,8 @@ PERCENT = 100.0
 IDEAL_SLOPE = 2.0
 # A number whose deviation is a smaller share of that of its parameter is told by what cancels in it.
 _OF_ONE = 0.8
+# Sides of an interval that are within this share those of the standard deviation say no more than that.
+_AS_USUAL = 0.15
 GAUGE_ZERO = "gauge zero share"
 """Name of the zero offset of the torque gauge over the working-point torque."""
 
@@ -141,7 +144,12 @@ def _interval_of_multiple(
         return None, (False, False)
     further = math.sqrt(max(row.std**2 - (factor * found.std) ** 2, 0.0))
     is_open = (interval.lower_open, interval.upper_open)
-    return widened((factor * interval.lower, factor * interval.upper), row.value, further, is_open), is_open
+    ends = widened((factor * interval.lower, factor * interval.upper), row.value, further, is_open)
+    sides = [abs(end - row.value) / (NORMAL_95 * row.std) for end in ends]
+    if not all(map(math.isfinite, ends)) or (not any(is_open) and all(abs(side - 1.0) < _AS_USUAL for side in sides)):
+        # the standard deviation says as much
+        return None, (False, False)
+    return ends, is_open
 
 
 def _physical_forms(
