@@ -55,6 +55,9 @@ def test_a_line_is_overdue_after_its_days_and_not_before(site):
     assert (unknown.kind, unknown.overdue) == ("being judged", True)
     both = stands(site, {"causes": [STEP]}, now=newest + timedelta(days=366))
     assert (both.kind, both.overdue) == ("changed", True)
+    # of those that only want a test, what wears stands above what does not
+    wearing = stands(site, {"causes": [STEP | {"expected": True}]}, now=newest + timedelta(days=366))
+    assert (wearing.kind, wearing.clearness > late.clearness) == ("test overdue", True)
     # three rows carry the word, so three are counted: one is nothing else
     rows = [SimpleNamespace(standing=standing) for standing in (late, unknown, both)]
     assert headline_of(rows) == "3 shaft lines: 1 changed, 3 with a test overdue, 1 being judged"

@@ -40,7 +40,7 @@ class Standing:
     overdue: bool
     """Whether its newest test is too long ago."""
     clearness: float = 0.0
-    """Size over deviation of what has changed, by which lines of one word are ordered."""
+    """Size over deviation of what has changed, or wears, by which lines of one word are ordered."""
 
 
 def standing_of(
@@ -59,13 +59,15 @@ def standing_of(
     # what is not known yet is told as such, with the test that is overdue beside it
     if overdue and kind in {"worn as expected", "unchanged"}:
         note = "; ".join(filter(None, (word, note)))
-        return Standing(kind="test overdue", word="test overdue", look="look", note=note, overdue=True)
-    clearness = 0.0 if found is None or kind != "changed" else _clearness(found[1])
+        # of those that only want a test, what wears stands above what does not
+        worn = 0.0 if found is None else _clearness(found[1], expected=True)
+        return Standing(kind="test overdue", word="test overdue", look="look", note=note, overdue=True, clearness=worn)
+    clearness = 0.0 if found is None or kind != "changed" else _clearness(found[1], expected=False)
     return Standing(kind=kind, word=word, look=look, note=note, overdue=overdue, clearness=clearness)
 
 
-def _clearness(summary: dict[str, Any]) -> float:
-    real = [one for one in summary.get("causes") or [] if not one.get("expected")]
+def _clearness(summary: dict[str, Any], *, expected: bool) -> float:
+    real = [one for one in summary.get("causes") or [] if bool(one.get("expected")) is expected]
     return max((abs(one["size"]) / one["std"] for one in real if one["std"]), default=0.0)
 
 
