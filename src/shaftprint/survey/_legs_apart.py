@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import p_value_text, plain, plain_letters, with_deviation
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.fit._identify import identify
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.search._settings import Settings
+from shaftprint.models._role import Role
 from shaftprint.reasons import Reason
 from shaftprint.survey._measurement import SINES, Measurement, pairs_of
 from shaftprint.units import rpm_from_rev_s
@@ -89,17 +91,23 @@ def apart_reasons(joint: Identification, alone: Sequence[LegAlone]) -> tuple[Rea
     names = " or ".join(f"--leg {name}" for name in explained if name != SINES)
     sentence = (
         f"One model does not explain all legs: p = {p_value_text(joint.p_value)}; each alone: {each}. Something of "
-        "governor, engine or gauge is not the same at these speeds, such as gains that a governor takes from a table "
-        "over the speed."
+        f"governor, engine or gauge is not the same at these speeds, such as {_such_as(alone)}."
     )
-    differences = _differences(alone)
+    differences = [words for _, words in _differences(alone)]
     told = f" What differs most: {'; '.join(differences)}." if differences else ""
     way_out = f" The result of one speed is had with {names}." if names else ""
     return (Reason(kind="legs apart", sentence=plain_letters(f"{sentence}{told}{way_out}")),)
 
 
-def _differences(alone: Sequence[LegAlone]) -> list[str]:
-    """Return the numbers that differ most between two legs, in words."""
+def _such_as(alone: Sequence[LegAlone]) -> str:
+    """Return what may not be the same at all speeds, by the number that differs most."""
+    if next((role for role, _ in _differences(alone)), None) == ShipRole.LOAD_SLOPE:
+        return "the scale of a torque gauge whose line bends, or its zero"
+    return "gains that a governor takes from a table over the speed"
+
+
+def _differences(alone: Sequence[LegAlone]) -> list[tuple[Role | None, str]]:
+    """Return the numbers that differ most between two legs, with their roles, in words."""
     differences = []
     for first, second in combinations(alone, 2):
         others = {one.name: one for one in (*second.fit.parameters, *second.fit.combinations)}
@@ -110,5 +118,6 @@ def _differences(alone: Sequence[LegAlone]) -> list[str]:
             if distance > _APART:
                 values = f"{with_deviation(one.value, one.std)} in {first.name}"
                 values += f", {with_deviation(other.value, other.std)} in {second.name}"
-                differences.append((distance, f"{one.name} {values}"))
-    return [words for _, words in sorted(differences, reverse=True)[:_MOST_NAMED]]
+                differences.append((distance, one.role, f"{one.name} {values}"))
+    differences.sort(key=lambda difference: -difference[0])
+    return [(role, words) for _, role, words in differences[:_MOST_NAMED]]
