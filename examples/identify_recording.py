@@ -49,5 +49,6 @@ fingerprint = sp.fingerprint.take_fingerprint(
 )
 sp.fingerprint.write_fingerprint(fingerprint, "my_fingerprint.json")
 for number in (*fingerprint.physical, *fingerprint.margins):
-    print(f"{number.name:30}{number.value:10.4g} +/- {number.std:.2g} {number.unit}")
+    low, high = number.limits_95
+    print(f"{number.name:30}{number.value:10.4g}   95 % interval {low:.4g} to {high:.4g} {number.unit}")
 print(fingerprint.verdict.reason)
