@@ -119,7 +119,7 @@ def identify_drive(
     remarks = [remark for record in records for remark in record.remarks]
     in_motion = tuple(starts_in_motion(one, fit))
     reasons = (
-        *late_outputs(one, fit, records, settings=settings, time=time, drawn=ByMagnitude()),
+        *late_outputs(one, fit, records, settings=settings, time=time),
         *alone(agreeing, fit.settings.starts),
         *held_outputs(one, records),
         *way.reasons,

@@ -20,7 +20,7 @@ from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._misfit import explained
 from shaftprint.identify.search._settings import Settings
-from shaftprint.identify.search._starts import Draw, GivenStarts
+from shaftprint.identify.search._starts import GivenStarts
 from shaftprint.models._block import Block
 from shaftprint.reasons import Reason
 from shaftprint.spelling import listed
@@ -33,8 +33,6 @@ _LONGEST, _SHORTEST_LAG, _LONGEST_LAG = 40, 0.2, 400.0
 _LEFT = 0.1
 # A sensor is named whose latency or lag is so many times its standard deviation.
 _SURE = 4.0
-# Starts of each search, the usual values first.
-_STARTS = 4
 _EXPLAINS = "which explains what the structure does not"
 
 Search = Callable[[EquippedDrive, Sequence[Record]], Identification | None]
@@ -57,19 +55,18 @@ def late_outputs(
     *,
     settings: Settings,
     time: TimeSettings,
-    drawn: Draw,
 ) -> tuple[Reason, ...]:
     """Return which sensors come late or smooth, where the structure does not explain the records and does with that.
 
-    ``fit``: the fit to the records. ``settings``, ``time``: how it was searched and compared. ``drawn``: how further
-    starts are drawn.
+    Each is searched from the usual values. ``fit``: the fit to the records. ``settings``, ``time``: how it was searched
+    and compared.
     """
     if explained(fit) or any(stated_sensors(one.drive).values()):
         return ()
 
     def search(other: EquippedDrive, of: Sequence[Record]) -> Identification | None:
         usual = np.array([[p.value for p in free_parameters(other, of)]])
-        how = replace(settings, starts=_STARTS, draw=GivenStarts(usual, drawn))
+        how = replace(settings, starts=1, draw=GivenStarts(usual))
         try:
             return identify_in_time(with_structures(other, of), rng=np.random.default_rng(0), settings=how, time=time)
         except IdentificationError:
