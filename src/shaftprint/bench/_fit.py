@@ -118,12 +118,16 @@ def identify_drive(
     profiled = profile(fit)
     remarks = [remark for record in records for remark in record.remarks]
     in_motion = tuple(starts_in_motion(one, fit))
+    kept = tuple(held_outputs(one, records))
+    # what keeps its values shows motion late as well
+    late = () if kept else late_outputs(one, fit, records, settings=settings, time=time)
+    of_start = () if late else in_motion
     reasons = (
-        *late_outputs(one, fit, records, settings=settings, time=time),
         *alone(agreeing, fit.settings.starts),
-        *held_outputs(one, records),
-        *way.reasons,
-        *in_motion,
+        *late,
+        *kept,
+        *(() if late else way.reasons),
+        *of_start,
         *large_offsets(one, fit),
     )
     verdict = assess(

@@ -29,6 +29,8 @@ from shaftprint.time_domain._record import Record
 
 # The longest latency that is looked for, in samples, and between which lags.
 _LONGEST, _SHORTEST_LAG, _LONGEST_LAG = 40, 0.2, 400.0
+# Less of a sample is no sensor.
+_MORE_THAN_HOLD = 0.6
 # So small a part of the misfit is left by what explains it.
 _LEFT = 0.1
 # A sensor is named whose latency or lag is so many times its standard deviation.
@@ -107,10 +109,12 @@ def _tried(one: EquippedDrive, records: Sequence[Record], search: Search) -> Ite
             by_output = {
                 output: replace(found_late, value=found_late.value - late_s) for output, found_late in by_output.items()
             }
+        # half a sample is whether inputs hold
+        by_output = {name: found for name, found in by_output.items() if abs(found.value) > _MORE_THAN_HOLD * sample_s}
         told = _told_late(one, by_output) if sensors is late else _told_smooth(by_output)
         if told:
             yield _Sensors(misfit=_misfit(found), reasons=told)
-        if told and explained(found):
+        if explained(found):
             return
 
 
@@ -132,7 +136,7 @@ def _later(record: Record, samples: int) -> Record:
 def _told_late(one: EquippedDrive, late: Mapping[str, Estimate]) -> tuple[Reason, ...]:
     """Return the latencies that are beyond chance; all outputs early are inputs that come late."""
     sure = {name: found for name, found in late.items() if abs(found.value) > _SURE * found.std}
-    if sure and len(sure) == len(late) and all(found.value < 0.0 for found in sure.values()):
+    if len(sure) == len(one.drive.outputs) and all(found.value < 0.0 for found in sure.values()):
         inputs, least = listed([signal.name for signal in one.drive.inputs]), max(late.values(), key=_value)
         sentence = (
             f"Against the outputs {inputs} {'comes' if len(one.drive.inputs) == 1 else 'come'} "

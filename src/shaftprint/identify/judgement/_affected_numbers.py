@@ -29,7 +29,7 @@ AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
     "late set point": (frozenset(("clock",)), "it depends on a set point that its channel shows late"),
     "clipping": (ALL - {"speed"}, "it depends on a torque that is clipped"),
     "gauge steadiness": (
-        ALL - {"speed", "set point", "delay"},
+        ALL - {"speed", "set point", "delay", "clock"},
         "it depends on a torque gauge and a load that stay the same during the test",
     ),
     "engine limit": (ALL, WHOLE),
