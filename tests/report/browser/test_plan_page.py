@@ -37,6 +37,7 @@ def page(tmp_path_factory):
         line=SetPointLine(slope_rpm_per_v=-251.0, offset_v=-5.0),
         created=datetime(2026, 11, 23, tzinfo=UTC),
         noise_source=HOSTILE,
+        remarks=("Nobody has measured the noise of this ship. A first test of 90 s does.",),
     )
     return render_plan(tmp_path_factory.mktemp("planned") / "plan", test)
 
@@ -56,6 +57,9 @@ def test_the_first_screen_says_what_is_missed_and_that_it_was_not_rehearsed(visi
         words = " ".join(found.page.locator("#found").inner_text().split())
         assert "do not meet the wish for t_d" in words
         assert "Was it rehearsed? No. Its numbers are predictions" in words
+        assert (
+            "What else is to be known before it? ! Look at this. Nobody has measured the noise of this ship." in words
+        )
         assert "Not known" not in words
         assert "not rehearsed" in found.page.locator("#top").inner_text()
 

@@ -16,11 +16,13 @@ PERCENT = 100.0
 def plan_cover(test: "PlannedTest") -> Cover:
     """Return the first page of a plan."""
     plan = test.plan
-    cards = [_wishes(test), _limits(test), _rehearsed(test)]
+    cards = [_wishes(test), _limits(test), _rehearsed(test), *_remarked(test)]
     is_enough = not plan.wish.names or plan.is_enough
+    # that it was not rehearsed is no fault of the plan
+    has_doubts = any(card.state == "look" for card in cards)
     return Cover(
         headline=test.sentences[0].removesuffix("."),
-        state="bad" if not is_enough else "fine" if cards[-1].state == "fine" else "look",
+        state="bad" if not is_enough else "look" if has_doubts else "fine",
         opening=(
             "Predicted, not measured: standard deviations to first order, for the assumed ship and noise. Planned with "
             f"the {test.noise_source}."
@@ -83,3 +85,10 @@ def _rehearsed(test: "PlannedTest") -> Card:
         )
     sentences = rehearsal.sentences
     return Card(question=question, state="fine" if len(sentences) == 1 else "look", sentence=" ".join(sentences))
+
+
+def _remarked(test: "PlannedTest") -> list[Card]:
+    """Return what is to be known before the test is sailed, such as a noise that nobody has measured."""
+    if not test.remarks:
+        return []
+    return [Card(question="What else is to be known before it?", state="look", sentence=" ".join(test.remarks))]
