@@ -51,7 +51,7 @@ _CALLED = {"vessel": "a vessel", "campaign": "a campaign", "conditions": "the co
     "new",
     cls=SectionedCommand,
     example="shaftprint new vessel mine.toml\nshaftprint new campaign --test 12min test.toml",
-    sections={"File": ("--output", "--test", "--from", "--vessel"), **READING_BESIDE_CARD, **CARD_SECTIONS},
+    sections={"File": ("--output", "--test", "--from", "--vessel"), **CARD_SECTIONS, **READING_BESIDE_CARD},
 )
 @click.argument("kind", type=click.Choice(["vessel", "campaign", "conditions", "drive"]))
 @click.argument("file", type=click.Path(path_type=Path), required=False)

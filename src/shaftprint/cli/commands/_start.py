@@ -37,7 +37,7 @@ with late():
     "start",
     cls=SectionedCommand,
     example="shaftprint start",
-    sections={**READING_BESIDE_CARD, **CARD_SECTIONS},
+    sections={**CARD_SECTIONS, **READING_BESIDE_CARD},
 )
 @click.argument("folder", type=click.Path(path_type=Path, file_okay=False, exists=True), default=Path())
 @click.option("--yes", is_flag=True, help="Ask nothing: what is not stated is derived, or taken as usual.")
