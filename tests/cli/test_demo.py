@@ -45,7 +45,6 @@ def test_last_lines_say_what_was_found_and_where(demo):
     # what was found in words, then the names: those that may be used, and of the others why not
     assert tail.index("Gain margin: ") < tail.index("  * Trusted: omega_n, ") < tail.index("  * Not trusted: K_p (")
     assert tail.rstrip().splitlines()[-4:-1] == [
-        f"Recording:   {Path('demo', 'recording.nc')}",
         f"Fingerprint: {Path('demo', 'fingerprint.json')}",
         f"Report:      {Path('demo', 'index.html')}",
     ]
@@ -86,7 +85,9 @@ def test_structures_of_the_thesis_are_in_the_report(demo):
 def test_line_to_do_it_again_works(demo, run, tmp_path, monkeypatch):
     folder, result = demo
     monkeypatch.chdir(folder.parent)
-    words = result.stdout.rstrip().splitlines()[-1].split()
+    *_, again, own = result.stdout.rstrip().splitlines()
+    assert own.split() == ["Your", "ship:", "shaftprint", "start"]
+    words = again.split()
     assert words[:2] == ["Again:", "shaftprint"]
     arguments = [*words[2:-1], tmp_path / "again"]
     assert run(*arguments).exit_code == 0

@@ -165,7 +165,7 @@ def _print_details(survey: Survey, thesis: ThesisMode) -> None:
 
 
 def _print_paths(output: Path) -> None:
-    echo(f"Recording:   {output / RECORDING}")
     print_paths(output)
     again = f"shaftprint identify {output / RECORDING} --vessel {output / 'vessel.toml'}"
     echo(f"Again:       {again} --campaign {output / 'campaign.toml'} -o again")
+    echo("Your ship:   shaftprint start")
