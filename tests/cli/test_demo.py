@@ -44,7 +44,7 @@ def test_last_lines_say_what_was_found_and_where(demo):
     assert "The thesis' way finds an inertia time of" in tail
     # what was found in words, then the names: those that may be used, and of the others why not
     assert tail.index("Gain margin: ") < tail.index("  * Trusted: omega_n, ") < tail.index("  * Not trusted: K_p (")
-    assert tail.rstrip().splitlines()[-4:-1] == [
+    assert tail.rstrip().splitlines()[-4:-2] == [
         f"Fingerprint: {Path('demo', 'fingerprint.json')}",
         f"Report:      {Path('demo', 'index.html')}",
     ]
