@@ -53,14 +53,14 @@ def levels(rng, samples, every):
     return values
 
 
-def lag(inputs, interval, *, hold, start=0.0, dry=0.0):
+def lag(inputs, interval, *, hold, start=0.0, dry=0.0, gain=GAIN, time_s=TIME_S):
     """Return the output at every sample: ``T dy/dt + y = K (u - dry sign y)``, the input holding or going straight."""
-    decay, output = np.exp(-interval / TIME_S), np.full(inputs.size, float(start))
+    decay, output = np.exp(-interval / time_s), np.full(inputs.size, float(start))
     for k in range(inputs.size - 1):
         # a straight line of slope s is followed behind by T s
         slope = 0.0 if hold else (inputs[k + 1] - inputs[k]) / interval
-        first, last = (GAIN * (inputs[k] + slope * (time - TIME_S)) for time in (0.0, interval))
-        rubbed = GAIN * dry * np.sign(output[k])
+        first, last = (gain * (inputs[k] + slope * (time - time_s)) for time in (0.0, interval))
+        rubbed = gain * dry * np.sign(output[k])
         output[k + 1] = last - rubbed + decay * (output[k] - first + rubbed)
     return output
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.bench.drawn_lags import lag, levels
 
 from shaftprint.bench import equipped, identify_drive
 from shaftprint.drive import load_drive
@@ -62,31 +63,11 @@ inputs_hold = true
 """
 
 
-def held_steps():
-    levels = np.random.default_rng(4).uniform(-5.0, 5.0, SAMPLES // 30)
-    # it begins at rest
-    levels[0] = 0.0
-    return np.repeat(levels, 30)
-
-
-def behind_lag(values, time_s, *, held):
-    """Return what comes out of a lag at the samples: of an input that holds exactly, of one that goes straight too."""
-    rest, found = np.exp(-STEP_S / time_s), np.zeros(values.size)
-    into = (1.0 - rest) if held else None
-    for k in range(values.size - 1):
-        if held:
-            found[k + 1] = rest * found[k] + into * values[k]
-        else:
-            slope = (values[k + 1] - values[k]) / STEP_S
-            found[k + 1] = rest * found[k] + (1.0 - rest) * (values[k] - slope * time_s) + slope * STEP_S
-    return found
-
-
 def record(*, late_n=0, late_u=0, smooth_n_s=0.0):
     """Return a record of a fan whose channels come late by so many samples, or smoothed."""
-    u = held_steps()
-    turning = GAIN * behind_lag(u, SHAFT_S, held=True)
-    n = behind_lag(turning, smooth_n_s, held=False) if smooth_n_s else turning
+    u = 5.0 * levels(np.random.default_rng(4), SAMPLES, 30)
+    turning = lag(u, STEP_S, hold=True, gain=GAIN, time_s=SHAFT_S)
+    n = lag(turning, STEP_S, hold=False, gain=1.0, time_s=smooth_n_s) if smooth_n_s else turning
     rng = np.random.default_rng(6)
 
     def after(values, samples):

@@ -4,8 +4,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from tests.bench import drawn_lags
-from tests.bench.drawn_lags import LAG_TOML, identified, levels, written
+from tests.bench.drawn_lags import LAG_TOML, identified, lag, levels, written
 from tests.known_fits import NOW
 
 from shaftprint.bench import equipped, read_records
@@ -28,18 +27,17 @@ groups = { steel = ["steel_1", "steel_2"] }
 """
 
 
-def lag_of(monkeypatch, time_s, rng, samples=240):
+def lag_of(time_s, rng, samples=240):
     """Return columns of a lag with a gain of 100 and some time constant."""
-    monkeypatch.setattr(drawn_lags, "TIME_S", time_s)
     inputs = levels(rng, samples, 16)
-    output = drawn_lags.lag(inputs, INTERVAL, hold=True) + 0.5 * rng.standard_normal(samples)
+    output = lag(inputs, INTERVAL, hold=True, time_s=time_s) + 0.5 * rng.standard_normal(samples)
     return {"u": inputs, "y": output}
 
 
 @pytest.mark.slow
-def test_what_differs_from_record_to_record_is_found_in_each(tmp_path, monkeypatch):
+def test_what_differs_from_record_to_record_is_found_in_each(tmp_path):
     rng = np.random.default_rng(3)
-    paths = [written(tmp_path, name, lag_of(monkeypatch, time_s, rng), INTERVAL) for name, time_s in TIMES_S.items()]
+    paths = [written(tmp_path, name, lag_of(time_s, rng), INTERVAL) for name, time_s in TIMES_S.items()]
     found = identified(tmp_path, *paths, text=LAG_TOML + OWN)
     values = {one.name: one for one in found.identification.parameters}
     assert set(values) == {"K", "T(brass)", "T(steel)"}
@@ -53,8 +51,8 @@ def test_what_differs_from_record_to_record_is_found_in_each(tmp_path, monkeypat
     kept = drive_fingerprint(found, sources=(), now=NOW)
     assert kept.held == {"T(known)": 0.35}
     # a record of another lag: its own time constant is found with it, the gain is not
-    other = written(tmp_path, "other", lag_of(monkeypatch, 1.1, rng), INTERVAL)
-    weaker = lag_of(monkeypatch, 0.2, rng)
+    other = written(tmp_path, "other", lag_of(1.1, rng), INTERVAL)
+    weaker = lag_of(0.2, rng)
     brass = written(tmp_path, "brass", weaker | {"y": 0.7 * weaker["y"]}, INTERVAL)
     one = found.equipped
     passed, failed = validate_drive(kept, one, (*read_records([other], one), *read_records([brass], one)))
@@ -70,11 +68,11 @@ def test_what_differs_from_record_to_record_is_found_in_each(tmp_path, monkeypat
     assert model.covariance.shape == (1, 1)
 
 
-def test_planned_records_tell_their_own_values_apart(tmp_path, monkeypatch):
+def test_planned_records_tell_their_own_values_apart(tmp_path):
     path = tmp_path / "drive.toml"
     path.write_text(LAG_TOML + OWN, encoding="utf-8")
     one = equipped(load_drive(path))
-    columns = lag_of(monkeypatch, 0.3, np.random.default_rng(1), 120)
+    columns = lag_of(0.3, np.random.default_rng(1), 120)
     plans = [written(tmp_path, name, columns, INTERVAL) for name in TIMES_S]
     records = read_records(plans, one)
     alone = predict_drive(one, records, noise_std={"y": 0.5}, values={"T": 0.3})

@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 from shaftprint.bench._begun import begun
 from shaftprint.bench._composed import composed
-from shaftprint.bench._sensors import behind_sensors, priors_of_sensors, stated_sensors
+from shaftprint.bench._sensors import WITHIN, behind_sensors, priors_of_sensors, stated_sensors
 from shaftprint.catalogue._drives import DRIVES, SIGNAL_UNITS
 from shaftprint.catalogue._linear_drives import along_a_line, unit_along
 from shaftprint.catalogue._shipped import shipped_structure
@@ -18,9 +18,6 @@ from shaftprint.models._parameter import Parameter
 from shaftprint.models._structure import Structure
 from shaftprint.spelling import meant
 from shaftprint.units import unit_factor
-
-# So many standard deviations of what is known lie within the bounds of the search.
-WITHIN = 6.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -121,15 +121,8 @@ def identify_drive(
     kept = tuple(held_outputs(one, records))
     # what keeps its values shows motion late as well
     late = () if kept else late_outputs(one, fit, records, settings=settings, time=time)
-    of_start = () if late else in_motion
-    reasons = (
-        *alone(agreeing, fit.settings.starts),
-        *late,
-        *kept,
-        *(() if late else way.reasons),
-        *of_start,
-        *large_offsets(one, fit),
-    )
+    of_records = late or (*kept, *way.reasons, *in_motion)
+    reasons = (*alone(agreeing, fit.settings.starts), *of_records, *large_offsets(one, fit))
     verdict = assess(
         fit,
         profile=profiled,

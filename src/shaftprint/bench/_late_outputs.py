@@ -6,6 +6,7 @@ is logged late, which makes all outputs early by as much, is found by the same d
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from shaftprint.time_domain._record import Record
 
 # The longest latency that is looked for, in samples, and between which lags.
 _LONGEST, _SHORTEST_LAG, _LONGEST_LAG = 40, 0.2, 400.0
-# Less of a sample is no sensor.
+# Less of a sample is whether inputs hold.
 _MORE_THAN_HOLD = 0.6
 # So small a part of the misfit is left by what explains it.
 _LEFT = 0.1
@@ -37,17 +38,19 @@ _LEFT = 0.1
 _SURE = 4.0
 _EXPLAINS = "which explains what the structure does not"
 
-Search = Callable[[EquippedDrive, Sequence[Record]], Identification | None]
-
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Sensors:
-    """Sensors that are late or smooth, and how well the structure explains the records with them."""
+class _Guess:
+    """What sensors may do to the outputs."""
 
-    misfit: float
-    """What chi-square leaves beyond the noise."""
-    reasons: tuple[Reason, ...]
-    """Which they are."""
+    sensors: Mapping[str, Block]
+    """Block of one parameter behind each output that is meant."""
+    records: Sequence[Record]
+    """Records in which that is looked for."""
+    told: Callable[[Mapping[str, Estimate]], tuple[Reason, ...]]
+    """How it is told by what is found of each output."""
+    moved_s: float = 0.0
+    """Time by which the outputs of these records were moved."""
 
 
 def late_outputs(
@@ -65,57 +68,69 @@ def late_outputs(
     """
     if explained(fit) or any(stated_sensors(one.drive).values()):
         return ()
-
-    def search(other: EquippedDrive, of: Sequence[Record]) -> Identification | None:
-        usual = np.array([[p.value for p in free_parameters(other, of)]])
-        how = replace(settings, starts=1, draw=GivenStarts(usual))
-        try:
-            return identify_in_time(with_structures(other, of), rng=np.random.default_rng(0), settings=how, time=time)
-        except IdentificationError:
-            return None
-
     ways = (True, False) if any(map(jump_within_a_sample, records)) else (records[0].hold,)
     for hold in ways:
-        held = [replace(record, hold=hold) for record in records]
-        best = min(_tried(one, held, search), key=lambda tried: tried.misfit, default=None)
-        if best is not None and best.misfit <= _LEFT * _misfit(fit):
-            return best.reasons
+        found: dict[float, tuple[Reason, ...]] = {}
+        for guess in _guesses(one, [replace(record, hold=hold) for record in records]):
+            beside = _beside(one, guess, settings, time)
+            if beside is None:
+                continue
+            reasons = guess.told(_by_output(beside, guess))
+            if reasons:
+                found.setdefault(_misfit(beside), reasons)
+            if explained(beside):
+                break
+        least = min(found, default=np.inf)
+        if least <= _LEFT * _misfit(fit):
+            return found[least]
     return ()
 
 
-def _tried(one: EquippedDrive, records: Sequence[Record], search: Search) -> Iterator[_Sensors]:
-    """Yield what explains the records better: latencies of all outputs, a lag of each, lags of all; one, if in full."""
+def _guesses(one: EquippedDrive, records: Sequence[Record]) -> Iterator[_Guess]:
+    """Yield latencies of all outputs, a lag of each, and lags of all where there are several."""
     names = [output.name for output in one.drive.outputs]
-    sample_s = 1.0 / max(record.rate_hz for record in records)
+    sample_s = _sample_s(records)
     late_s = _LONGEST * sample_s
-    moved = [_later(record, round(late_s * record.rate_hz)) for record in records]
-    late: dict[str, Block] = {name: latency_of(name, 0.0, 2.0 * late_s, late_s) for name in names}
-    lags: dict[str, Block] = {
-        name: lag_of(name, _SHORTEST_LAG * sample_s, _LONGEST_LAG * sample_s, sample_s) for name in names
-    }
+    yield _Guess(
+        sensors={name: latency_of(name, 0.0, 2.0 * late_s, late_s) for name in names},
+        records=[_later(record, round(late_s * record.rate_hz)) for record in records],
+        told=partial(_told_late, one),
+        moved_s=late_s,
+    )
+    lags = {name: lag_of(name, _SHORTEST_LAG * sample_s, _LONGEST_LAG * sample_s, sample_s) for name in names}
     singles = [{name: lag} for name, lag in lags.items()] if len(names) > 1 else []
-    for sensors, of in ((late, moved), *((some, records) for some in (*singles, lags))):
-        try:
-            behind = behind_sensors(one.structure, {output: (sensor,) for output, sensor in sensors.items()})
-        except StructureError:
-            # it has a parameter of that name, which may well be the same
-            continue
-        found = search(replace(one, structure=behind), of)
-        if found is None:
-            continue
-        named = {estimate.name: estimate for estimate in found.parameters}
-        by_output = {output: named[sensor.parameters[0].name] for output, sensor in sensors.items()}
-        if sensors is late:
-            by_output = {
-                output: replace(found_late, value=found_late.value - late_s) for output, found_late in by_output.items()
-            }
-        # half a sample is whether inputs hold
-        by_output = {name: found for name, found in by_output.items() if abs(found.value) > _MORE_THAN_HOLD * sample_s}
-        told = _told_late(one, by_output) if sensors is late else _told_smooth(by_output)
-        if told:
-            yield _Sensors(misfit=_misfit(found), reasons=told)
-        if explained(found):
-            return
+    for sensors in (*singles, lags):
+        yield _Guess(sensors=sensors, records=records, told=_told_smooth)
+
+
+def _beside(one: EquippedDrive, guess: _Guess, settings: Settings, time: TimeSettings) -> Identification | None:
+    """Return the fit with what is guessed; None where it comes to none."""
+    try:
+        behind = behind_sensors(one.structure, {output: (sensor,) for output, sensor in guess.sensors.items()})
+    except StructureError:
+        # it has a parameter of that name, which may well be the same
+        return None
+    other = replace(one, structure=behind)
+    usual = np.array([[p.value for p in free_parameters(other, guess.records)]])
+    how = replace(settings, starts=1, draw=GivenStarts(usual))
+    pairs = with_structures(other, guess.records)
+    try:
+        return identify_in_time(pairs, rng=np.random.default_rng(0), settings=how, time=time)
+    except IdentificationError:
+        return None
+
+
+def _by_output(fit: Identification, guess: _Guess) -> dict[str, Estimate]:
+    """Return what was found of each output, without what is no more than whether inputs hold."""
+    named = {estimate.name: estimate for estimate in fit.parameters}
+    estimates = {output: named[sensor.parameters[0].name] for output, sensor in guess.sensors.items()}
+    found = {output: replace(one, value=one.value - guess.moved_s) for output, one in estimates.items()}
+    least_s = _MORE_THAN_HOLD * _sample_s(guess.records)
+    return {output: one for output, one in found.items() if abs(one.value) > least_s}
+
+
+def _sample_s(records: Sequence[Record]) -> float:
+    return 1.0 / max(record.rate_hz for record in records)
 
 
 def _misfit(fit: Identification) -> float:
@@ -137,7 +152,10 @@ def _told_late(one: EquippedDrive, late: Mapping[str, Estimate]) -> tuple[Reason
     """Return the latencies that are beyond chance; all outputs early are inputs that come late."""
     sure = {name: found for name, found in late.items() if abs(found.value) > _SURE * found.std}
     if len(sure) == len(one.drive.outputs) and all(found.value < 0.0 for found in sure.values()):
-        inputs, least = listed([signal.name for signal in one.drive.inputs]), max(late.values(), key=_value)
+        inputs, least = (
+            listed([signal.name for signal in one.drive.inputs]),
+            max(late.values(), key=lambda found: found.value),
+        )
         sentence = (
             f"Against the outputs {inputs} {'comes' if len(one.drive.inputs) == 1 else 'come'} "
             f"{stated(-least.value, least.std, 's')} late, {_EXPLAINS}; log all channels with one instrument, or move "
@@ -176,7 +194,3 @@ def _row(output: str, what: str, found: Estimate) -> str:
         return ""
     known = f"{what}_s = {found.value:.2g} and {what}_std_s = {0.2 * found.value:.1g}"
     return f", or state {known} for {output} in the drive file"
-
-
-def _value(estimate: Estimate) -> float:
-    return estimate.value

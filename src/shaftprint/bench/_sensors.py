@@ -16,7 +16,7 @@ from shaftprint.models._structure import Structure
 LATENCY, LAG = "t_", "T_"
 """Begin of the names of a sensor's latency and of its lag, before that of the output."""
 # So many standard deviations of what is stated lie within the bounds of the search.
-_WITHIN = 6.0
+WITHIN = 6.0
 # A lag that is nearly none takes steps without end: this share of the stated one is the least.
 _LEAST_LAG = 0.1
 # Bounds of what is stated exactly are apart all the same [s].
@@ -87,7 +87,7 @@ def _stated(output: Signal) -> list[Block]:
     ):
         if not value and std is None:
             continue
-        mean, within = value or 0.0, _WITHIN * (std or 0.0)
+        mean, within = value or 0.0, WITHIN * (std or 0.0)
         lower, upper = max(mean - within, least * mean), mean + max(within, _APART_S)
         stated.append(of(output.name, lower, upper, mean, held=std is None))
     return stated

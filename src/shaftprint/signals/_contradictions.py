@@ -12,7 +12,7 @@ from shaftprint.signals._scale_reasons import scale_reasons, torque_beside_file
 from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.signals.kinds._compare import are_alike, engine_turns, swapped_pick_ups, what_would_agree
 from shaftprint.signals.levels._gauge_zero import zero_between, zero_reason
-from shaftprint.signals.levels._working_point import direction_words, turned_lever
+from shaftprint.signals.levels._working_point import direction_words, expect_lever_as_stated
 
 if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
@@ -120,8 +120,8 @@ def _of_scales(
     """Return how speed and torque are off by one factor, by the test, or without one by the means of all channels."""
     beside = ""
     if signals is not None and campaign is not None:
-        if turned := turned_lever(signals.working_point, signals.calibration, vessel):
-            return (turned,)
+        if turned := expect_lever_as_stated(signals.working_point, signals.calibration, vessel):
+            return turned
         reasons = scale_reasons(
             signals.working_point,
             vessel,

@@ -40,10 +40,10 @@ from shaftprint.signals.levels._steady import steady_stretches
 from shaftprint.signals.levels._working_point import (
     expect_asked_speed,
     expect_driving,
+    expect_lever_as_stated,
     expect_stated_slope,
     find_working_point,
     stretches_at_working_point,
-    turned_lever,
     working_point_of_test,
     working_voltage,
 )
@@ -171,7 +171,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
             *readings.findings,
             *mismatches,
             *stopped,
-            *filter(None, [turned_lever(steady.working_point, steady.calibration, vessel)]),
+            *expect_lever_as_stated(steady.working_point, steady.calibration, vessel),
             *expect_asked_speed(steady.working_point, vessel),
             *expect_stated_slope(steady.calibration, campaign),
             *differences,

@@ -184,6 +184,8 @@ def _fitted(
         for one in structure.free
         if one.role == ShipRole.SET_POINT_LATENCY and one.lower == 0.0
     }
+    if not late:
+        return fit_of(pairs_of(structure, measurement), rng=copy.deepcopy(rng), settings=settings)
     found: Identification | IdentificationError
     try:
         found = fit_of(pairs_of(structure, measurement), rng=copy.deepcopy(rng), settings=settings)

@@ -89,19 +89,19 @@ def apart_reasons(joint: Identification, alone: Sequence[LegAlone]) -> tuple[Rea
         for one in alone
     )
     names = " or ".join(f"--leg {name}" for name in explained if name != SINES)
+    differences = _differences(alone)
     sentence = (
         f"One model does not explain all legs: p = {p_value_text(joint.p_value)}; each alone: {each}. Something of "
-        f"governor, engine or gauge is not the same at these speeds, such as {_such_as(alone)}."
+        f"governor, engine or gauge is not the same at these speeds, such as {_such_as(differences)}."
     )
-    differences = [words for _, words in _differences(alone)]
-    told = f" What differs most: {'; '.join(differences)}." if differences else ""
+    told = f" What differs most: {'; '.join(words for _, words in differences)}." if differences else ""
     way_out = f" The result of one speed is had with {names}." if names else ""
     return (Reason(kind="legs apart", sentence=plain_letters(f"{sentence}{told}{way_out}")),)
 
 
-def _such_as(alone: Sequence[LegAlone]) -> str:
+def _such_as(differences: Sequence[tuple[Role | None, str]]) -> str:
     """Return what may not be the same at all speeds, by the number that differs most."""
-    if next((role for role, _ in _differences(alone)), None) == ShipRole.LOAD_SLOPE:
+    if differences and differences[0][0] == ShipRole.LOAD_SLOPE:
         return "the scale of a torque gauge whose line bends, or its zero"
     return "gains that a governor takes from a table over the speed"
 

@@ -147,16 +147,18 @@ def expect_driving(point: WorkingPoint, vessel: "Vessel") -> None:
         )
 
 
-def turned_lever(point: WorkingPoint, calibration: "SetPointCalibration", vessel: "Vessel") -> str:
-    """Return that the speed rises where the lever's table falls, or the other way round; empty where both agree."""
+def expect_lever_as_stated(
+    point: WorkingPoint, calibration: "SetPointCalibration", vessel: "Vessel"
+) -> tuple[str, ...]:
+    """Return a finding where the speed rises with the lever and its table falls, or the other way round."""
     sensor = vessel.sensors.set_point
     ends = [sensor.asked_rpm(point.set_point_v + change) for change in (-_NEAR_V, _NEAR_V)]
     if ends[0] is None or ends[1] is None or (ends[1] - ends[0]) * calibration.slope_rev_s_per_v >= 0.0:
-        return ""
+        return ()
     ways = ("rises", "falls") if ends[1] < ends[0] else ("falls", "rises")
     return (
         f"channel {sensor.channel}: expected a speed that {ways[1]} with it, as table_rpm of sensors.set_point says, "
-        f"found one that {ways[0]}; turn the speeds of table_rpm round, or a plan moves the lever the wrong way."
+        f"found one that {ways[0]}; turn the speeds of table_rpm round, or a plan moves the lever the wrong way.",
     )
 
 
