@@ -213,5 +213,5 @@ def test_load_and_fuel_rate_are_those_of_rack_and_speed(fields: Any, expected: f
     sensor = RackSensor(channel="X", cycle_s=0.02, latency_s=0.0, **fields)
     unit = ControlUnit(sensor, SHIP, latency_s=0.0, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1))
     counts = unit.next(stretch_of(np.full(4000, 0.4), engine_rpm=900.0))
-    assert (unit.scale, unit.offset) == (step, 0.0)
+    assert (unit.logged.scale, unit.logged.offset) == (step, 0.0)
     assert counts * step == pytest.approx(expected, abs=0.51 * step)

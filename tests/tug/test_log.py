@@ -42,7 +42,7 @@ def values(log: SpeedLog, speed: np.ndarray, stretch_samples: int) -> np.ndarray
                 )
             )
         )
-    return np.concatenate(parts) * log.scale
+    return np.concatenate(parts) * log.logged.scale
 
 
 def log_of(rng_seed: int = 1, noise_m_s: float = 0.0, **changes: Any) -> SpeedLog:
@@ -54,7 +54,7 @@ def test_values_are_late_by_the_latency() -> None:
     """A ship that gains 0.1 m/s a second from 4 m/s on."""
     log = log_of()
     speed = 4.0 + 0.1 * np.arange(20_000) / RATE_HZ
-    time = log.start_s + 0.2 * np.arange(50)
+    time = log.times.start_s + 0.2 * np.arange(50)
     shown = values(log, speed, 20_000)
     assert shown.size == 50
     assert shown == pytest.approx(np.maximum(4.0 + 0.1 * (time - 0.3), 4.0), abs=0.0006)

@@ -16,8 +16,9 @@ from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_load_
 from shaftprint.tug.plant._pitch import actuation_of
 from shaftprint.tug.plant._plant import RACK, SPEED, WAY
 from shaftprint.tug.plant._voyage import Stretch
-from shaftprint.tug.sensors._bus import Bus, MessageTimes
+from shaftprint.tug.sensors._bus import Bus, MessageSensor, MessageTimes
 from shaftprint.tug.sensors._control_unit import ControlUnit
+from shaftprint.tug.sensors._counts import LoggedChannel
 from shaftprint.tug.sensors._demand_messages import DemandMessages
 from shaftprint.tug.sensors._encoder import Encoder
 from shaftprint.tug.sensors._faults import Fault
@@ -26,7 +27,7 @@ from shaftprint.tug.sensors._helm import Helm, HelmMessages, PitchLever
 from shaftprint.tug.sensors._log import SpeedLog
 from shaftprint.tug.sensors._machine_torque import MachineTorque
 from shaftprint.tug.sensors._pitch_feedback import PitchFeedback
-from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT, PickUp
+from shaftprint.tug.sensors._pulses import PickUp
 from shaftprint.tug.sensors._speed_meter import SpeedMessages, SpeedMeter
 from shaftprint.vessel._sensors import SpeedSensor
 from shaftprint.vessel._vessel import Vessel
@@ -35,14 +36,11 @@ from shaftprint.vessel._wheel import SAMPLES_A_TOOTH
 RATE_HZ = 2000.0
 """Sample rate where the vessel file names no logger [Hz]."""
 
-# What sends messages.
-SENDERS = (ControlUnit, DemandMessages, HelmMessages, SpeedMessages, TorqueMessages)
-
 
 class _Sensor(Protocol):
     """One channel of the logger."""
 
-    channel: str
+    logged: LoggedChannel
 
     def next(self, stretch: Stretch) -> NDArray[np.int16]: ...
 
@@ -114,9 +112,8 @@ class Crew:
         self._demand = (
             None if asked is None else DemandMessages(asked, rate_hz=self._rate_hz, rng=demand, bus=Bus.of(tug))
         )
-        on_board = (self._helm, *self._speeds, self._gauge, self._control_unit, self._log)
-        of_pitch = (self._lever, self._feedback)
-        every = (*on_board, *of_pitch, self._demand, self._machine)
+        of_gearbox = (self._lever, self._feedback, self._machine)
+        every = (self._helm, *self._speeds, self._gauge, *of_gearbox, self._control_unit, self._demand, self._log)
         self._sensors: tuple[_Sensor, ...] = tuple(sensor for sensor in every if sensor is not None)
         self._limited = {excitation.name: 0 for excitation in campaign.excitations}
 
@@ -206,7 +203,7 @@ class Crew:
         faults = [fault for sensor in self._sensors for fault in sensor.faults()]
         strips = tuple(
             StripTruth(
-                channel=pick_up.channel,
+                channel=pick_up.logged.name,
                 angle_deg=tuple((360.0 * pick_up.angle_rev).tolist()),
                 start_deg=360.0 * pick_up.phase_rev,
             )
@@ -228,7 +225,7 @@ class Crew:
     @property
     def channels(self) -> tuple[str, ...]:
         """Names of the channels that it fills."""
-        return tuple(sensor.channel for sensor in self._sensors)
+        return tuple(sensor.logged.name for sensor in self._sensors)
 
     @property
     def rate_hz(self) -> float:
@@ -242,89 +239,32 @@ class Crew:
 
     def declare(self, writer: RecordingWriter) -> None:
         """Say of every channel what it holds."""
-        sensors = self._vessel.sensors
-        writer.declare(
-            sensors.set_point.channel,
-            unit=sensors.set_point.unit,
-            scale=self._helm.scale,
-            offset=self._helm.offset,
-            long_name="speed set point behind the potentiometer",
-            **self._clock_of(self._helm),
-        )
-        for sensor, speed in zip(sensors.speed, self._speeds, strict=True):
-            what = f"{'angle' if sensor.gives_angle else 'speed'} of the {sensor.shaft} shaft"
-            teeth = f"pick-up on the {sensor.shaft} shaft, {sensor.pulses_per_revolution} per revolution"
+        for sensor in self._sensors:
+            logged = sensor.logged
             writer.declare(
-                sensor.channel,
-                unit=sensor.unit,
-                scale=speed.scale,
-                offset=speed.offset,
-                long_name=teeth if sensor.gives_pulses else what,
-                **self._clock_of(speed),
+                logged.name,
+                unit=logged.unit,
+                scale=logged.scale,
+                offset=logged.offset,
+                long_name=logged.long_name,
+                **self._clock_of(sensor),
             )
-        writer.declare(
-            sensors.shaft_torque.channel,
-            unit=sensors.shaft_torque.unit,
-            scale=self._gauge.scale,
-            offset=self._gauge.offset,
-            long_name="torque telemetry of the propeller shaft",
-            **self._clock_of(self._gauge),
-        )
-        names = {
-            "set point of the pitch of the propeller": self._lever,
-            "feedback of the pitch of the propeller": self._feedback,
-            MachineTorque.words: self._machine,
-        }
-        for name, voltage in names.items():
-            if voltage is not None:
-                rate_hz, scale = self._rate_hz, VOLT_PER_COUNT
-                writer.declare(voltage.channel, unit="V", rate_hz=rate_hz, scale=scale, long_name=name)
-        self._declare_slow_channels(writer)
 
     def _clock_of(self, sensor: _Sensor) -> _SensorClock:
         """Return on which clock a sensor is recorded: that of the logger, or that of its messages."""
-        if not isinstance(sensor, SENDERS):
+        if not isinstance(sensor, MessageSensor):
             return {"rate_hz": self._rate_hz, "start_s": 0.0, "times": "by rate"}
         times = sensor.times
         kind: Literal["by rate", "uneven"] = "by rate" if times.is_regular else "uneven"
         return {"rate_hz": 1.0 / times.cycle_s, "start_s": times.start_s, "times": kind}
 
-    def _declare_slow_channels(self, writer: RecordingWriter) -> None:
-        if self._control_unit is not None:
-            writer.declare(
-                self._control_unit.channel,
-                unit=self._control_unit.unit,
-                scale=self._control_unit.scale,
-                offset=self._control_unit.offset,
-                long_name="demand percent torque of the engine's control unit, from its CAN bus",
-                **self._clock_of(self._control_unit),
-            )
-        if self._demand is not None:
-            writer.declare(
-                self._demand.channel,
-                unit="rpm",
-                scale=self._demand.scale,
-                offset=self._demand.offset,
-                long_name="desired engine speed of the control unit, from its CAN bus",
-                **self._clock_of(self._demand),
-            )
-        if self._log is not None:
-            writer.declare(
-                self._log.channel,
-                unit=self._log.unit,
-                rate_hz=1.0 / self._log.cycle_s,
-                start_s=self._log.start_s,
-                scale=self._log.scale,
-                long_name="speed of the ship through the water, from its log",
-            )
-
     def write(self, writer: RecordingWriter, stretch: Stretch) -> None:
         """Measure a stretch of the voyage and write it down."""
         for sensor in self._sensors:
-            if isinstance(sensor, SENDERS) and not sensor.times.is_regular:
-                writer.append(sensor.channel, *sensor.messages(stretch))
+            if isinstance(sensor, MessageSensor) and not sensor.times.is_regular:
+                writer.append(sensor.logged.name, *sensor.messages(stretch))
             else:
-                writer.append(sensor.channel, sensor.next(stretch))
+                writer.append(sensor.logged.name, sensor.next(stretch))
         times = stretch.time_s[stretch.limited]
         for excitation in self._campaign.excitations:
             inside = (times >= excitation.start_s) & (times < excitation.stop_s)

@@ -1,26 +1,21 @@
 """Sailing a ship with two lines: one raw recording with the channels of both."""
 
-import json
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign._both_shafts import CampaignOfBoth
-from shaftprint.errors import RecordingError, SettingsError
-from shaftprint.files import reason, written_whole
+from shaftprint.errors import SettingsError
 from shaftprint.notebook._shown import Shown
-from shaftprint.recording._writer import RecordingWriter
 from shaftprint.tug._crew import Crew
-from shaftprint.tug._sail import CHUNK
+from shaftprint.tug._sail import CHUNK, recorded
 from shaftprint.tug._shared_water import SharedWater
-from shaftprint.tug._truth import SCHEMA, Truth, truth_path
+from shaftprint.tug._truth import Truth
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._both_lines import sea_and_own, voyage_of_both
-from shaftprint.tug.plant._voyage import Stretch
 from shaftprint.vessel._vessel import Vessel
 
 
@@ -66,18 +61,29 @@ def sail_both(
         for line, (tug, vessel, one) in enumerate(zip(tugs, vessels, campaign.sides, strict=True), start=1)
     )
     _expect_one_log(vessels, crews)
-    name = vessels[0].name if vessels[0].ship is None else vessels[0].ship.name
-    try:
-        with (
-            written_whole(truth_path(path), overwrite=overwrite) as part,
-            RecordingWriter(path, attributes={"vessel": name}, overwrite=overwrite) as writer,
-        ):
-            _record(tugs, vessels, campaign, water, crews, writer, seed=seed, progress=progress)
-            truth = TruthOfBoth(port=crews[0].truth(), starboard=crews[1].truth(), water=water)
-            part.write_text(_text(truth), encoding="utf-8")
-    except OSError as error:
-        raise RecordingError(f"{path}: the recording cannot be written: {reason(error)}") from None
-    return truth
+    step_s, samples = 1.0 / crews[0].rate_hz, crews[0].samples
+    rngs = (np.random.default_rng((seed, 0)), *(crew.process for crew in crews))
+    sea, own = sea_and_own([tug.noise for tug in tugs], water, step_s, rngs)
+    stretches = voyage_of_both(
+        tugs,
+        vessels,
+        campaign.sides,
+        water=water,
+        step_s=step_s,
+        steps=samples,
+        chunk=CHUNK,
+        sea=sea,
+        disturbances=own,
+    )
+    return recorded(
+        path,
+        crews,
+        stretches,
+        truth_of=lambda: TruthOfBoth(port=crews[0].truth(), starboard=crews[1].truth(), water=water),
+        vessel=vessels[0].name if vessels[0].ship is None else vessels[0].ship.name,
+        overwrite=overwrite,
+        progress=progress,
+    )
 
 
 def _expect_one_log(vessels: tuple[Vessel, Vessel], crews: tuple[Crew, ...]) -> None:
@@ -93,53 +99,3 @@ def _expect_one_log(vessels: tuple[Vessel, Vessel], crews: tuple[Crew, ...]) -> 
             f"vessels {vessels[0].name} and {vessels[1].name}: expected one logger.sample_rate_hz, found "
             f"{port.rate_hz:g} and {starboard.rate_hz:g} Hz."
         )
-
-
-def _record(
-    tugs: tuple[Tug, Tug],
-    vessels: tuple[Vessel, Vessel],
-    campaign: CampaignOfBoth,
-    water: SharedWater,
-    crews: tuple[Crew, ...],
-    writer: RecordingWriter,
-    *,
-    seed: int,
-    progress: Callable[[float], None] | None,
-) -> None:
-    """Sail and write; sensors and file work in a second thread while the ship sails on."""
-    for crew in crews:
-        crew.declare(writer)
-    step_s, samples = 1.0 / crews[0].rate_hz, crews[0].samples
-    rngs = (np.random.default_rng((seed, 0)), *(crew.process for crew in crews))
-    sea, own = sea_and_own([tug.noise for tug in tugs], water, step_s, rngs)
-    stretches = voyage_of_both(
-        tugs,
-        vessels,
-        campaign.sides,
-        water=water,
-        step_s=step_s,
-        steps=samples,
-        chunk=CHUNK,
-        sea=sea,
-        disturbances=own,
-    )
-
-    def write(both: tuple[Stretch, Stretch]) -> None:
-        for crew, stretch in zip(crews, both, strict=True):
-            crew.write(writer, stretch)
-
-    done, waiting = 0, None
-    with ThreadPoolExecutor(max_workers=1) as second_thread:
-        for both in stretches:
-            if waiting is not None:
-                waiting.result()
-            waiting = second_thread.submit(write, both)
-            done += both[0].time_s.size
-            if progress is not None:
-                progress(done / samples)
-    if waiting is not None:
-        waiting.result()
-
-
-def _text(truth: TruthOfBoth) -> str:
-    return json.dumps({"schema": SCHEMA} | asdict(truth), indent=1, allow_nan=False) + "\n"

@@ -16,6 +16,7 @@ from shaftprint.tug._truth import Truth
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._voyage import Stretch, acting, ready_line, sailed
+from shaftprint.tug.sensors._counts import LoggedChannel
 from shaftprint.vessel._vessel import Vessel
 
 VoltsAt: TypeAlias = Callable[[FloatArray], FloatArray]
@@ -47,23 +48,11 @@ class _Decided(LeverCourse):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class SteppedChannel:
-    """A channel of the log of a stepped ship; ``value = count * scale + offset``."""
+class SteppedChannel(LoggedChannel):
+    """A channel of the log of a stepped ship, sampled evenly."""
 
-    name: str
-    """Its name."""
-    unit: str
-    """Unit of its values."""
     rate_hz: float
-    """Samples a second [Hz]."""
     start_s: float
-    """Time of its first sample [s]."""
-    scale: float
-    """Value of one count [unit]."""
-    offset: float
-    """Value at count zero [unit]."""
-    long_name: str
-    """What it is, in words."""
 
 
 class SteppedTug:
@@ -127,28 +116,9 @@ class _Log:
         self.channels: dict[str, SteppedChannel] = {}
         self._counts: dict[str, NDArray[np.int16]] = {}
 
-    def declare(
-        self,
-        name: str,
-        *,
-        unit: str,
-        rate_hz: float,
-        start_s: float = 0.0,
-        scale: float = 1.0,
-        offset: float = 0.0,
-        long_name: str = "",
-        times: Literal["by rate", "uneven"] = "by rate",
-    ) -> None:
+    def declare(self, name: str, *, times: Literal["by rate", "uneven"], **declared: Any) -> None:
         if times == "by rate":
-            self.channels[name] = SteppedChannel(
-                name=name,
-                unit=unit,
-                rate_hz=rate_hz,
-                start_s=start_s,
-                scale=scale,
-                offset=offset,
-                long_name=long_name,
-            )
+            self.channels[name] = SteppedChannel(name=name, **declared)
 
     def append(self, name: str, counts: NDArray[np.int16], time_s: FloatArray | None = None) -> None:
         if name in self.channels:

@@ -4,6 +4,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 
@@ -233,9 +234,9 @@ def truth_path(recording: str | Path) -> Path:
     return Path(recording).with_suffix(".truth.json")
 
 
-def truth_text(truth: Truth) -> str:
-    """Return a truth as the text of its file."""
-    return json.dumps({"schema": SCHEMA} | asdict(truth), indent=1, allow_nan=False) + "\n"
+def truth_text(truth: Shown) -> str:
+    """Return a truth, of one line or of both, as the text of its file."""
+    return json.dumps({"schema": SCHEMA} | asdict(cast("Any", truth)), indent=1, allow_nan=False) + "\n"
 
 
 def read_truth(path: str | Path) -> Truth:

@@ -1,12 +1,17 @@
 """When the messages of a CAN bus come: on the cycle of their sender, early or late by chance, and some never."""
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SettingsError
 from shaftprint.tug._tug import Tug
+from shaftprint.tug.plant._voyage import Stretch
+from shaftprint.tug.sensors._counts import LoggedChannel, as_counts
 
 # Evenly spread by half a cycle either way: with more, a message would overtake the one before.
 _MOST_JITTER = 0.5 / np.sqrt(3.0)
@@ -41,6 +46,10 @@ class Bus:
     def is_regular(self) -> bool:
         """Whether every message comes, and at its cycle."""
         return self.jitter == 0.0 and self.lost == 0.0
+
+
+REGULAR = Bus()
+"""A bus on which every message comes, and at its cycle."""
 
 
 class MessageTimes:
@@ -115,3 +124,40 @@ class MessageStream:
         part = position - before
         self._tail = longer[-kept:]
         return (1.0 - part) * longer[before - begin] + part * longer[before - begin + 1], time_s
+
+
+class MessageSensor(ABC):
+    """Stream of the raw counts of a quantity that comes message by message."""
+
+    def __init__(
+        self,
+        logged: LoggedChannel,
+        times: MessageTimes,
+        *,
+        latency_s: float,
+        rate_hz: float,
+        in_counts: Callable[[FloatArray], FloatArray] | None = None,
+    ) -> None:
+        """Begin before the first stretch.
+
+        ``in_counts``: how many counts the channel shows of what messages carry; None where that is in its unit.
+        """
+        self.logged, self.times = logged, times
+        self._in_counts = in_counts
+        self._stream = MessageStream(times, latency_s=latency_s, rate_hz=rate_hz)
+
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the messages of the next stretch, shape (messages,)."""
+        return self.messages(stretch)[0]
+
+    def messages(self, stretch: Stretch) -> tuple[NDArray[np.int16], FloatArray]:
+        """Return counts and times [s] of the messages of the next stretch, each of shape (messages,)."""
+        before, values = self._quantity(stretch)
+        carried, time_s = self._stream.next(values, first=before)
+        if self._in_counts is None:
+            return as_counts((carried - self.logged.offset) / self.logged.scale), time_s
+        return as_counts(self._in_counts(carried)), time_s
+
+    @abstractmethod
+    def _quantity(self, stretch: Stretch) -> tuple[float, FloatArray]:
+        """Return what the quantity was before the start, in steady running, and what it is, sample by sample."""

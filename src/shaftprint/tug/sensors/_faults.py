@@ -26,6 +26,14 @@ class Fault:
     """How long it lasts [s]; 0 for a pulse."""
 
 
+class Faultless:
+    """A sensor whose recording nothing spoils: an instrument of its own, or a CAN bus, which sends a message again."""
+
+    def faults(self) -> list[Fault]:
+        """Return no fault."""
+        return []
+
+
 class Spikes(NamedTuple):
     """Single samples that are replaced by nonsense."""
 

@@ -10,7 +10,8 @@ from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.kernels._compiled import compiled
 from shaftprint.tug._noise import Noise
 from shaftprint.tug.plant._voyage import Stretch
-from shaftprint.tug.sensors._bus import MessageStream, MessageTimes
+from shaftprint.tug.sensors._bus import MessageSensor, MessageTimes
+from shaftprint.tug.sensors._counts import LoggedChannel
 from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_spikes
 from shaftprint.vessel._vessel import Vessel
 
@@ -125,11 +126,13 @@ class TorqueGauge:
         sensor = vessel.sensors.shaft_torque
         self._rng = rng
         self._rate_hz = rate_hz
-        self.channel = sensor.channel
-        self.scale = _HEADROOM * sensor.full_scale_nm / abs(sensor.scale_nm_per_unit) / 32768.0
-        """Value of one count in the unit of the channel."""
-        self.offset = sensor.live_zero
-        """Value of no count in the unit of the channel."""
+        self.logged = LoggedChannel(
+            name=sensor.channel,
+            unit=sensor.unit,
+            scale=_HEADROOM * sensor.full_scale_nm / abs(sensor.scale_nm_per_unit) / 32768.0,
+            offset=sensor.live_zero,
+            long_name="torque telemetry of the propeller shaft",
+        )
         orders = shaft_orders(noise, vessel)
         smoothing = 1.0 - math.exp(-2.0 * math.pi * LOW_PASS_HZ / rate_hz)
         # the latency of the vessel file is that of the whole telemetry: those of its filter and mean are parts of it
@@ -141,7 +144,7 @@ class TorqueGauge:
             full_scale_nm=sensor.full_scale_nm,
             resolution_nm=sensor.resolution_nm or 0.0,
             zero_nm=sensor.zero_nm + zero_offset_nm,
-            nm_per_count=self.scale * sensor.scale_nm_per_unit,
+            nm_per_count=self.logged.scale * sensor.scale_nm_per_unit,
             order=np.array(list(orders)),
             amplitude=np.array(list(orders.values())),
             phase_rev=rng.uniform(0.0, 1.0, len(orders)),
@@ -177,7 +180,7 @@ class TorqueGauge:
         """Return the faults of the whole recording."""
         rate = self._rate_hz
         spikes = [
-            Fault(channel=self.channel, kind="spike", time_s=sample / rate, duration_s=1.0 / rate)
+            Fault(channel=self.logged.name, kind="spike", time_s=sample / rate, duration_s=1.0 / rate)
             for sample in self._spikes.sample.tolist()
         ]
         drops = zip(
@@ -185,7 +188,7 @@ class TorqueGauge:
         )
         return spikes + [
             Fault(
-                channel=self.channel,
+                channel=self.logged.name,
                 kind="hold" if holds else "rail",
                 time_s=start / rate,
                 duration_s=(stop - start) / rate,
@@ -194,39 +197,25 @@ class TorqueGauge:
         ]
 
 
-class TorqueMessages:
+class TorqueMessages(MessageSensor):
     """Stream of the raw counts of a torque that its telemetry sends message by message."""
 
     def __init__(self, gauge: TorqueGauge, times: MessageTimes, *, averaging_s: float, rate_hz: float) -> None:
-        self.channel, self.scale, self.offset = gauge.channel, gauge.scale, gauge.offset
-        self.times = times
-        """When its messages come."""
+        # messages carry counts of the gauge, which is late already
+        super().__init__(gauge.logged, times, latency_s=0.0, rate_hz=rate_hz, in_counts=lambda counts: counts)
+        self.faults = gauge.faults
         self._gauge = gauge
-        self._stream = MessageStream(times, latency_s=0.0, rate_hz=rate_hz)
-        self._tail: FloatArray = np.empty(0)
+        self._tail: FloatArray | None = None
         self._length = round(averaging_s * rate_hz) + 1
-        self._first: float | None = None
 
-    def next(self, stretch: Stretch) -> NDArray[np.int16]:
-        """Return the counts of the messages of the next stretch, shape (messages,)."""
-        return self.messages(stretch)[0]
-
-    def messages(self, stretch: Stretch) -> tuple[NDArray[np.int16], FloatArray]:
-        """Return counts and times [s] of the messages of the next stretch, each of shape (messages,)."""
+    def _quantity(self, stretch: Stretch) -> tuple[float, FloatArray]:
         counts = self._gauge.next(stretch).astype(np.float64)
-        if self._first is None:
-            # before the start the line ran steadily
-            self._first = float(counts[0])
-            self._tail = np.full(self._length - 1, self._first)
+        if self._tail is None:
+            self._tail = np.full(self._length - 1, counts[0])
         longer = np.concatenate([self._tail, counts])
         self._tail = longer[longer.size - (self._length - 1) :]
         means = np.lib.stride_tricks.sliding_window_view(longer, self._length).mean(axis=1)
-        shown, time_s = self._stream.next(means, first=self._first)
-        return np.rint(shown).clip(-32768, 32767).astype(np.int16), time_s
-
-    def faults(self) -> list[Fault]:
-        """Return the faults of the whole recording."""
-        return self._gauge.faults()
+        return float(counts[0]), means
 
 
 def shaft_orders(noise: Noise, vessel: Vessel) -> dict[float, float]:

@@ -5,24 +5,20 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from shaftprint.arrays import FloatArray
 from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._physics import working_point
 from shaftprint.tug.plant._voyage import Stretch
-from shaftprint.tug.sensors._faults import Fault
+from shaftprint.tug.sensors._counts import VOLT_PER_COUNT, LoggedChannel, as_counts
+from shaftprint.tug.sensors._faults import Faultless
 from shaftprint.tug.sensors._late import Late
-from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT
 from shaftprint.vessel._machine_torque import MachineTorqueSensor
 from shaftprint.vessel._shaft_machine import ShaftMachine
 from shaftprint.vessel._vessel import Vessel
 
 
-class MachineTorque:
+class MachineTorque(Faultless):
     """Stream of the raw counts of the machine's torque, a latency late, with white noise."""
-
-    words = "torque of the electric machine on the gearbox, from its converter"
-    """What the channel is."""
 
     @classmethod
     def of(cls, tug: Tug, vessel: Vessel, *, rate_hz: float, rng: np.random.Generator) -> Self | None:
@@ -43,7 +39,8 @@ class MachineTorque:
         rate_hz: float,
         rng: np.random.Generator,
     ) -> None:
-        self.channel = sensor.channel
+        words = "torque of the electric machine on the gearbox, from its converter"
+        self.logged = LoggedChannel(name=sensor.channel, unit="V", long_name=words)
         self._sensor, self._rng = sensor, rng
         self._machine_nm = truth.shown / geared.shaft_nm(1.0)
         self._rms_nm = truth.shown_rms * torque_nm / geared.shaft_nm(1.0)
@@ -54,9 +51,4 @@ class MachineTorque:
         shown = self._machine_nm * self._late.next(stretch.machine_nm)
         shown += self._rms_nm * self._rng.standard_normal(shown.size)
         volts = (shown - self._sensor.torque_nm_at_zero_v) / self._sensor.torque_nm_per_v
-        counts: FloatArray = np.rint(volts / VOLT_PER_COUNT)
-        return counts.clip(-32768, 32767).astype(np.int16)
-
-    def faults(self) -> list[Fault]:
-        """Return no fault."""
-        return []
+        return as_counts(volts / VOLT_PER_COUNT)

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray
 from shaftprint.tug._pitch_actuation import PitchActuation
 from shaftprint.tug.plant._voyage import Stretch
-from shaftprint.tug.sensors._faults import Fault
+from shaftprint.tug.sensors._counts import VOLT_PER_COUNT, LoggedChannel, as_counts
+from shaftprint.tug.sensors._faults import Faultless
 from shaftprint.tug.sensors._late import Late
-from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT
 from shaftprint.vessel._pitch_sensors import PitchSensor
 
 
-class PitchFeedback:
+class PitchFeedback(Faultless):
     """Stream of the raw counts of the pitch, a latency late, with white noise and one that wanders slowly."""
 
     def __init__(
@@ -27,7 +27,8 @@ class PitchFeedback:
         rate_hz: float,
         rng: np.random.Generator,
     ) -> None:
-        self.channel = sensor.channel
+        words = "feedback of the pitch of the propeller"
+        self.logged = LoggedChannel(name=sensor.channel, unit="V", long_name=words)
         self._sensor, self._actuation, self._rest = sensor, actuation, pitch_ratio
         # before the start the pitch stood still
         self._late = Late(sensor.latency_s * rate_hz)
@@ -41,8 +42,7 @@ class PitchFeedback:
         shown += self._actuation.sensor_rms * self._rng.standard_normal(shown.size)
         shown += self._next_wander(shown.size)
         volts = (self._rest + shown - self._sensor.pitch_ratio_at_zero_v) / self._sensor.pitch_ratio_per_v
-        counts: FloatArray = np.rint(volts / VOLT_PER_COUNT)
-        return counts.clip(-32768, 32767).astype(np.int16)
+        return as_counts(volts / VOLT_PER_COUNT)
 
     def _next_wander(self, count: int) -> FloatArray:
         """Return the slow noise of the next samples, a first-order process that goes on from the last."""
@@ -53,7 +53,3 @@ class PitchFeedback:
         )
         self._wander = float(wander[-1])
         return wander
-
-    def faults(self) -> list[Fault]:
-        """Return no fault."""
-        return []

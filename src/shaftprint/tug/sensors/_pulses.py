@@ -9,13 +9,11 @@ from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.kernels._compiled import compiled
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._voyage import Stretch
+from shaftprint.tug.sensors._counts import VOLT_PER_COUNT, LoggedChannel
 from shaftprint.tug.sensors._faults import Fault, draw_times
 from shaftprint.tug.sensors._turns import motion_of, turns_of
 from shaftprint.vessel._sensors import SpeedSensor
 from shaftprint.vessel._vessel import Vessel
-
-VOLT_PER_COUNT = 10.24 / 32768.0
-"""Resolution of the voltage channels of the logger [V]."""
 
 _LOW_V, _HIGH_V = 0.35, 4.6
 # The light spot is about half as wide as a strip, which gives each edge this fraction of the pulse width.
@@ -120,9 +118,6 @@ def _pulse_train(angle, speed, noise_v, strips, view, counts) -> None:  # type: 
 class PickUp:
     """Stream of the raw counts of one speed pick-up."""
 
-    scale, offset = VOLT_PER_COUNT, 0.0
-    """Voltage of one count and of none [V]."""
-
     def __init__(
         self,
         sensor: SpeedSensor,
@@ -136,7 +131,8 @@ class PickUp:
         noise = tug.noise
         self._rng = rng
         self._noise_v = noise.pulse_rms_v
-        self.channel = sensor.channel
+        words = f"pick-up on the {sensor.shaft} shaft, {sensor.pulses_per_revolution} per revolution"
+        self.logged = LoggedChannel(name=sensor.channel, unit=sensor.unit, long_name=words)
         self._sensor = sensor
         marked_edge = _teeth_of(sensor, tug, rng) if sensor.wheel else _strips_of(sensor, tug)
         counted = marked_edge if not sensor.toothed.extra else marked_edge[: -sensor.toothed.extra]
@@ -183,7 +179,7 @@ class PickUp:
         """Return the faults of the pulses that have passed so far."""
         kinds = (("missing pulse", self._view.missing_s, 2), ("doubled pulse", self._view.doubled_s, 3))
         return [
-            Fault(channel=self.channel, kind=kind, time_s=float(time))
+            Fault(channel=self.logged.name, kind=kind, time_s=float(time))
             for kind, times, index in kinds
             for time in times[: self._view.place[index]]
         ]

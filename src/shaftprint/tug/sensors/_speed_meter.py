@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._voyage import Stretch
-from shaftprint.tug.sensors._bus import Bus, MessageStream, MessageTimes
-from shaftprint.tug.sensors._faults import Fault
+from shaftprint.tug.sensors._bus import Bus, MessageSensor, MessageTimes
+from shaftprint.tug.sensors._counts import LoggedChannel, as_counts
+from shaftprint.tug.sensors._faults import Faultless
 from shaftprint.tug.sensors._late import Late
 from shaftprint.tug.sensors._turns import motion_of, turns_of
 from shaftprint.vessel._sensors import SpeedSensor
@@ -22,20 +23,22 @@ SPEED_STEP_RPM = 0.125
 """Step of the engine speed in a message; SAE J1939-71, SPN 190."""
 
 
-class SpeedMeter:
+class SpeedMeter(Faultless):
     """Stream of the raw counts of one speed, a latency late, with white noise."""
 
     def __init__(
         self, sensor: SpeedSensor, tug: Tug, vessel: Vessel, *, rate_hz: float, rng: np.random.Generator
     ) -> None:
-        self.channel = sensor.channel
         self._sensor, self._turns = sensor, turns_of(sensor, vessel)
         highest_rev_s = 1.3 * vessel.machine.rated_speed_rpm / 60.0 * abs(self._turns) / vessel.gearbox.ratio
-        self._per_rev_s, self._at_rest = _line(sensor)
-        self.offset = self._at_rest
-        """Value of no count, in the unit of the channel."""
-        self.scale = self._per_rev_s * highest_rev_s / _HIGHEST_COUNT
-        """Value of one count, in the unit of the channel."""
+        self._per_rev_s, at_rest = _line(sensor)
+        self.logged = LoggedChannel(
+            name=sensor.channel,
+            unit=sensor.unit,
+            scale=self._per_rev_s * highest_rev_s / _HIGHEST_COUNT,
+            offset=at_rest,
+            long_name=_words(sensor),
+        )
         self._noise_rev_s = tug.speed_meter_noise * highest_rev_s
         # before the start the line ran steadily
         self._late = Late(sensor.latency_s * rate_hz)
@@ -45,46 +48,27 @@ class SpeedMeter:
         """Return the counts of the next stretch, shape (steps,)."""
         shown = self._late.next(self._turns * motion_of(self._sensor, stretch)[0])
         shown += self._noise_rev_s * self._rng.standard_normal(shown.size)
-        counts: FloatArray = np.rint(shown * self._per_rev_s / self.scale)
-        return counts.clip(-32768, 32767).astype(np.int16)
-
-    def faults(self) -> list[Fault]:
-        """Return no fault."""
-        return []
+        return as_counts(shown * self._per_rev_s / self.logged.scale)
 
 
-class SpeedMessages:
+class SpeedMessages(Faultless, MessageSensor):
     """Stream of the raw counts of one speed in rpm that a control unit sends, message by message."""
 
     def __init__(
         self, sensor: SpeedSensor, vessel: Vessel, *, cycle_s: float, rate_hz: float, rng: np.random.Generator, bus: Bus
     ) -> None:
-        self.channel = sensor.channel
-        self.offset = 0.0
-        """Value of no count [rpm]."""
-        self.scale = SPEED_STEP_RPM
-        """Value of one count [rpm]."""
-        self.times = MessageTimes(bus, cycle_s=cycle_s, rng=rng)
-        """When its messages come."""
+        logged = LoggedChannel(name=sensor.channel, unit=sensor.unit, scale=SPEED_STEP_RPM, long_name=_words(sensor))
+        times = MessageTimes(bus, cycle_s=cycle_s, rng=rng)
+        super().__init__(logged, times, latency_s=sensor.latency_s, rate_hz=rate_hz)
         self._sensor, self._turns = sensor, turns_of(sensor, vessel)
-        self._stream = MessageStream(self.times, latency_s=sensor.latency_s, rate_hz=rate_hz)
-        self._first: float | None = None
 
-    def next(self, stretch: Stretch) -> NDArray[np.int16]:
-        """Return the counts of the messages of the next stretch, shape (messages,)."""
-        return self.messages(stretch)[0]
-
-    def messages(self, stretch: Stretch) -> tuple[NDArray[np.int16], FloatArray]:
-        """Return counts and times [s] of the messages of the next stretch, each of shape (messages,)."""
+    def _quantity(self, stretch: Stretch) -> tuple[float, FloatArray]:
         rpm = 60.0 * self._turns * motion_of(self._sensor, stretch)[0]
-        # before the start the line ran steadily
-        self._first = float(rpm[0]) if self._first is None else self._first
-        shown, time_s = self._stream.next(rpm, first=self._first)
-        return np.rint(shown / self.scale).clip(-32768, 32767).astype(np.int16), time_s
+        return float(rpm[0]), rpm
 
-    def faults(self) -> list[Fault]:
-        """Return no fault: a CAN bus sends a spoilt message again."""
-        return []
+
+def _words(sensor: SpeedSensor) -> str:
+    return f"speed of the {sensor.shaft} shaft"
 
 
 def _line(sensor: SpeedSensor) -> tuple[float, float]:
