@@ -186,6 +186,32 @@ def test_the_times_of_an_asc_file_count_from_where_they_say(tmp_path, dbc, stamp
         assert speed.stamps_s(0, 400) == pytest.approx(times, abs=2e-4 if stamps == "relative" else 1e-6)
 
 
+@pytest.mark.parametrize(
+    ("head", "is_decimal"),
+    [
+        # converters leave out lines of the head that the library needs, or write the day as it is in German
+        ("date Mon Jun 1 10:00:00.250 am 2026\nbase hex  timestamps absolute\n", False),
+        ("base hex  timestamps absolute\n", False),
+        ("base dec  timestamps absolute\nno internal events logged\n", True),
+        ("date Mo. Jun 1 10:00:00.250 2026\nbase dec  timestamps absolute\n// version 13.0.0\n", True),
+    ],
+)
+def test_an_asc_file_with_parts_of_a_head_has_its_first_frame_and_its_base(tmp_path, dbc, head, is_decimal):
+    identifier, form = (f"{EEC1}", "d") if is_decimal else (f"{EEC1:X}", "02X")
+    rows = "".join(
+        f"   {t:.6f} 1  {identifier}x       Rx   d 8 {' '.join(format(byte, form) for byte in c)}\n"
+        for t, c in zip(TIMES, CONTENT, strict=True)
+    )
+    (tmp_path / "log.asc").write_text(head + rows, encoding="utf-8")
+    with read_recording(tmp_path / "log.asc", dbc=dbc) as recording:
+        assert recording.began == (datetime(2026, 6, 1, 10, 0, 0, 250_000) if "date" in head else None)  # noqa: DTZ001
+        speed = recording.channel("EngineSpeed")
+        assert speed.stamps_s(0, 400) == pytest.approx(TIMES, abs=1e-6)
+        assert values(recording, "EngineSpeed") == pytest.approx(
+            np.where(np.arange(400) == 7, np.nan, RPM), nan_ok=True
+        )
+
+
 def test_long_frames_and_other_objects_of_a_blf_file(tmp_path):
     """CAN FD frames of 64 bytes, and marks between the frames."""
     text = (

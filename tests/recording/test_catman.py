@@ -50,6 +50,16 @@ def write(tmp_path):
     return to_file
 
 
+@pytest.mark.parametrize("form", [0, 1, 2])
+def test_an_amplifier_that_is_overdriven_or_without_a_sensor_has_no_value(write, form):
+    torque = np.where(np.arange(COUNT) % 50 == 7, -1e6, 500.0 + 100.0 * TORQUE)
+    path = write(_channel("M_s", torque, form=form), _channel("T", np.full(COUNT, -1e6), form=form % 2))
+    with read_recording(path) as recording:
+        found = recording.channel("M_s").values(0, COUNT)
+        assert np.flatnonzero(np.isnan(found)).tolist() == list(range(7, COUNT, 50))
+        assert np.isnan(recording.channel("T").values(0, COUNT)).all()
+
+
 def test_channels_have_the_step_and_date_of_their_own_headers(write):
     # as many samples at half the rate, and a start 1.5 s later
     slow = _channel("M_e", 3.0 * TORQUE, step_ms=10.0, days=DAY + 1.5 / 86_400.0, unit="kNm")

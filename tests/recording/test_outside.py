@@ -27,6 +27,7 @@ class DWComplexChannel:
     pass
 
 class Info:
+    start_measure_time = datetime(2026, 3, 4, 4, 46, 7, tzinfo=UTC)
     start_store_time = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
 
 class Channel:
@@ -43,7 +44,7 @@ class Closed(Channel):
 
 K = np.arange(600_000)
 CHANNELS = [
-    Channel(0, "M_s", "Nm", 0, 2000.0, 0.25 + K / 2000.0, K * 0.5),
+    Channel(0, "M_s", "Nm", 0, 2000.0, 1200.25 + K / 2000.0, K * 0.5),
     Channel(1, "X", "%", 1, 0.0, K[:300] / 20.0, -1.0 * K[:300]),
     Channel(2, "bus", "", 1, 0.0, np.cumsum(1 + K[:300] % 7), K[:300]),
     Channel(3, "triggered", "V", 0, 2000.0, K[:300] / 2000.0 + 5.0 * (K[:300] > 100), K[:300]),
@@ -144,7 +145,7 @@ def test_dewesoft_channels_with_clocks_and_without(dewesoft):
     path.write_bytes(b"DEWE")
     with read_recording(path) as recording:
         torque, percent = recording.channel("M_s"), recording.channel("X")
-        assert (torque.unit, torque.rate_hz, torque.start_s, torque.count) == ("N m", 2000.0, 0.25, 600_000)
+        assert (torque.unit, torque.rate_hz, torque.start_s, torque.count) == ("N m", 2000.0, 1200.25, 600_000)
         assert torque.values(262_143, 262_146).tolist() == [131_071.5, 131_072.0, 131_072.5]
         assert (percent.rate_hz, percent.values(298, 300).tolist()) == (20.0, [-298.0, -299.0])
         assert set(recording.left_out) == {"triggered", "spectrum", "single", "CAN/EngineSpeed", "CAN/Demand"}
@@ -152,7 +153,8 @@ def test_dewesoft_channels_with_clocks_and_without(dewesoft):
             assert "Dewesoft's library refuses the channel" in recording.left_out[name]
         assert recording.channel("bus").is_uneven
         assert "triggered" in recording.left_out["triggered"]
-        assert recording.began.isoformat() == "2026-03-04T05:06:07+00:00"
+        # the first sample was taken 20 minutes later, when storing began
+        assert recording.began.isoformat() == "2026-03-04T04:46:07+00:00"
     with pytest.raises(RecordingError, match="closed already"):
         torque.read(0, 1)
 

@@ -124,6 +124,17 @@ def test_a_channel_of_times_with_its_unit(tmp_path, name, unit, numbers, increme
         assert bool(recording.remarks) == (increment == 1.0)
 
 
+def test_an_increment_that_nobody_set_gives_way_to_a_stated_rate(tmp_path):
+    with TdmsWriter(tmp_path / "log.tdms") as file:
+        file.write_segment([ChannelObject("G", "M_s", FIRST, properties={"wf_increment": 1.0})])
+    with read_recording(tmp_path / "log.tdms") as recording:
+        assert recording.channel("M_s").rate_hz == 1.0
+        assert "State the rate (--sample-rate)" in recording.remarks[0]
+    with read_recording(tmp_path / "log.tdms", sample_rate_hz=250.0) as recording:
+        assert recording.channel("M_s").rate_hz == 250.0
+        assert "does not count beside the 250 Hz given" in recording.remarks[0]
+
+
 def test_two_clocks_that_disagree_are_refused(tmp_path):
     told = {"wf_increment": 0.02}
     with TdmsWriter(tmp_path / "log.tdms") as file:

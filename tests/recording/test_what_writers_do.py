@@ -373,6 +373,11 @@ def test_a_number_for_no_value_is_named_where_it_stands_apart(tmp_path):
     (remark,) = _remarks(tmp_path, [*plain, -9999, *plain, -9999])
     assert "n: -9999 stands in 2 rows, far from all other values (1000 to 1049)" in remark
     assert _remarks(tmp_path, [*plain, -9999]) == ()
+    # HBM's amplifiers, overdriven or without a sensor
+    (remark,) = _remarks(tmp_path, [*plain, -1000000, -1e6])
+    assert "n: -1000000 stands in 2 rows, far from all other values" in remark
+    (remark,) = _remarks(tmp_path, ["-1.000000E+6"] * 60)
+    assert "n: -1000000 stands in every row" in remark
     # within the others, or one of two levels
     assert _remarks(tmp_path, [*plain, 999, 999, 950]) == ()
     assert _remarks(tmp_path, [0, 9999] * 30) == ()

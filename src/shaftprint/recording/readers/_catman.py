@@ -36,6 +36,8 @@ _BEGIN, _LONGEST_HEAD = 6, 2**26
 _OF_CLOCK, _FORM = 16, 140
 _FORMS, _COUNTS, _FULL_SCALE = {0: "<f8", 1: "<f4", 2: "<u2"}, 2, 32_767.0
 _NUMBERS = 0
+# what catman stores for an amplifier that is overdriven or has no sensor
+_OVERFLOW = -1e6
 _ZERO = datetime(1899, 12, 30)  # noqa: DTZ001 - the file says no zone
 _TIMES = re.compile(r"(?:time|zeit|temps|tempo|tiempo)\b", re.IGNORECASE)
 _RATE_AGREEMENT, _ROUNDING = 1e-3, 0.5
@@ -251,6 +253,7 @@ class _Source:
                 content = self.file.read(length)
             if len(content) != length:
                 raise RecordingError(f"{self.path}, channel {one.name}: samples are missing; is the file cut?")
-            return low + step * np.frombuffer(content, dtype=dtype).astype(np.float64)
+            values = low + step * np.frombuffer(content, dtype=dtype).astype(np.float64)
+            return np.where(values == _OVERFLOW, np.nan, values)
 
         return read

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any, TextIO
@@ -10,33 +10,15 @@ from typing import Any, TextIO
 import numpy as np
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S, UNDATED_YEAR
+from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S
+from shaftprint.recording.readers.can._asc_lines import AscLines, Lines, begins_as_asc
 from shaftprint.recording.readers.can._frames import EXTENDED, FILL, FrameLog, Frames
 from shaftprint.recording.readers.can._row_logs import Rows, row_kind
 
 _BLOCK_FRAMES = 1 << 16
-_FIGURES = 3
 _CLASSIC, _LONG = 8, 64
 _ASC, _TRC = "ASC", "TRC"
 
-_MONTHS = {
-    name: number
-    for number, names in enumerate(
-        ("jan", "feb", "mar", "apr", "may mai", "jun", "jul", "aug", "sep", "oct okt", "nov", "dec dez"), start=1
-    )
-    for name in names.split()
-}
-_MARCH = re.compile(r"m.{1,2}r[zs]?\.?")
-_DATE = re.compile(
-    r"\w+\.?\s+(?P<month>\S+)\s+(?P<day>\d+)\s+(?P<time>\d+:\d+:\d+)(?:[.:](?P<part>\d+))?\s*(?P<half>[ap]m)?\s+"
-    r"(?P<year>\d{4})",
-    re.IGNORECASE,
-)
-_ASC_DATE = re.compile(r"\s*date\s+(?P<date>.+)", re.IGNORECASE)
-_ASC_BASE = re.compile(r"\s*base\s+(?:hex|dec)(?:\s+timestamps\s+(?P<stamps>\w+))?", re.IGNORECASE)
-_ASC_TRIGGER = re.compile(r"\s*begin\s+triggerblock\s+(?P<date>.*)", re.IGNORECASE)
-_ASC_ROW = re.compile(r"\s*(?P<time>\d+\.\d+)(?P<rest>\s+.*)", re.DOTALL)
-_ASC_START = re.compile(r"\s+start of measurement", re.IGNORECASE)
 _TRC_VERSION = re.compile(r";\$FILEVERSION\s*=\s*(?P<version>\S+)", re.IGNORECASE)
 _TRC_VERSIONS = ("1.0", "1.1", "1.3", "2.0", "2.1")
 _CANDUMP = re.compile(r"\(\d+\.\d+\)\s+\S+\s+[0-9A-Fa-f]+#")
@@ -65,7 +47,7 @@ def kind_of(path: Path, begin: str) -> str:
         return "candump"
     if any(_TRC_VERSION.match(line) for line in lines) or (path.suffix.lower() == ".trc" and lines[0][0] == ";"):
         return _TRC
-    if any(_ASC_BASE.match(line) for line in lines) and any(_ASC_DATE.match(line) for line in lines):
+    if begins_as_asc(lines):
         return _ASC
     return ""
 
@@ -93,7 +75,7 @@ def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog
         zero_s, log.began = first.timestamp, datetime.fromtimestamp(first.timestamp, UTC)
         if not lines.has_zone:
             log.began = log.began.replace(tzinfo=None)
-    elif isinstance(lines, _AscLines):
+    elif isinstance(lines, AscLines):
         log.began = lines.began
     buses: dict[str, int] = {}
 
@@ -108,51 +90,7 @@ def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog
     return log
 
 
-class _Lines:
-    """Lines of a file for a library that goes through them, and whether the last one has been given."""
-
-    def __init__(self, path: Path, file: TextIO) -> None:
-        self._path = path
-        self._file = file
-        self._next: str | None = None
-        self.rows = 0
-        self.last = ""
-        self.last_is_row = False
-        self.has_zone = True
-        """Whether dates of the lines say the zone."""
-
-    def __iter__(self) -> "_Lines":
-        return self
-
-    def __next__(self) -> str:
-        line = self._file.readline() if self._next is None else self._next
-        if not line:
-            raise StopIteration
-        self._next = self._file.readline()
-        self.last, before = line, self.rows
-        line = self.changed(line)
-        self.last_is_row = self.rows > before
-        return line
-
-    def changed(self, line: str) -> str:
-        """Return the line as the library is to read it."""
-        return line
-
-    @property
-    def is_at_end(self) -> bool:
-        """Whether no line is left."""
-        return self._next == ""
-
-    @property
-    def is_cut(self) -> bool:
-        """Whether the last line does not end, as where a file is cut off."""
-        return self.is_at_end and not self.last.endswith("\n")
-
-    def close(self) -> None:
-        """Leave the file to who has opened it."""
-
-
-class _CandumpLines(_Lines):
+class _CandumpLines(Lines):
     """Lines of candump, those that it shows on a terminal as those that it logs."""
 
     def __init__(self, path: Path, file: TextIO) -> None:
@@ -194,7 +132,7 @@ def _are_steps(times: list[float]) -> bool:
     return stays or back > _BACK * len(times)
 
 
-class _RowLines(_Lines):
+class _RowLines(Lines):
     """Rows of other programs, as lines of candump."""
 
     def __init__(self, path: Path, file: TextIO, kind: str) -> None:
@@ -215,92 +153,7 @@ class _RowLines(_Lines):
         return lines[0] if lines else ""
 
 
-class _AscLines(_Lines):
-    """Lines of an ASC file, with times from the beginning of the measurement on.
-
-    Vector's programs state that beginning in the first line, and with each block when it was triggered; others state
-    when they wrote the file, and with the block when it began. Stamps are relative to the beginning ("absolute"), or to
-    the row before ("relative").
-    """
-
-    def __init__(self, path: Path, file: TextIO) -> None:
-        super().__init__(path, file)
-        self._header: datetime | None = None
-        self._trigger: datetime | None = None
-        self._is_new_block = False
-        self._shift_s = self._last_s = 0.0
-        self._is_relative = False
-        self.began: datetime | None = None
-
-    def changed(self, line: str) -> str:
-        row = _ASC_ROW.match(line)
-        if row is None:
-            self._take_header(line)
-            return line
-        stamp = float(row["time"])
-        if _ASC_START.match(row["rest"]):
-            return line
-        self.rows += 1
-        if self._is_relative:
-            self._last_s += stamp
-            return f"{self._last_s:.9f}{row['rest']}"
-        if self._is_new_block:
-            self._place_block(stamp)
-        return f"{stamp + self._shift_s:.9f}{row['rest']}" if self._shift_s else line
-
-    def _take_header(self, line: str) -> None:
-        base, date, trigger = _ASC_BASE.match(line), _ASC_DATE.match(line), _ASC_TRIGGER.match(line)
-        if base is not None:
-            self._is_relative = (base["stamps"] or "").lower() == "relative"
-        elif date is not None:
-            self._header = self.began = _date(date["date"])
-        elif trigger is not None:
-            self._trigger = _date(trigger["date"])
-            self._is_new_block = self._trigger is not None
-
-    def _place_block(self, stamp: float) -> None:
-        """Find what the stamps of a block count from: the beginning of the measurement, or that of the block."""
-        self._is_new_block = False
-        trigger, header = self._trigger, self._header
-        if trigger is None:
-            return
-        if header is None or trigger < header:
-            # whoever wrote the first line did so after the measurement
-            zero = trigger
-        else:
-            since_s = (trigger - header).total_seconds()
-            zero = trigger if abs(stamp) < abs(stamp - since_s) else header
-        if self.rows == 1:
-            self.began = self._header = zero
-            return
-        if self.began is not None:
-            self._shift_s = (zero - self.began).total_seconds()
-
-
-_LINES: Mapping[str, type[_Lines]] = {_ASC: _AscLines, _TRC: _Lines, "candump": _CandumpLines}
-
-
-def _date(text: str) -> datetime | None:
-    date = _DATE.match(text.strip())
-    if date is None:
-        return None
-    word = date["month"].lower()
-    # an umlaut in any encoding
-    month = 3 if _MARCH.fullmatch(word) else _MONTHS.get(word[:3])
-    if month is None:
-        return None
-    hour, minute, second = (int(part) for part in date["time"].split(":"))
-    if date["half"]:
-        hour = hour % 12 + (12 if date["half"].lower() == "pm" else 0)
-    if int(date["year"]) <= UNDATED_YEAR:
-        return None
-    try:
-        whole = datetime(int(date["year"]), month, int(date["day"]), hour, minute, second)  # noqa: DTZ001
-    except ValueError:
-        return None
-    part = date["part"] or ""
-    # python-can writes milliseconds without leading zeros, 5 for 0.005 s; all others write three figures or more
-    return whole + timedelta(seconds=1e-3 * int(part) if 0 < len(part) < _FIGURES else float(f"0.{part or 0}"))
+_LINES: Mapping[str, type[Lines]] = {_ASC: AscLines, _TRC: Lines, "candump": _CandumpLines}
 
 
 def _expect_version(path: Path, file: TextIO) -> None:
@@ -314,7 +167,7 @@ def _expect_version(path: Path, file: TextIO) -> None:
         )
 
 
-def _whole(messages: Iterator[Any], lines: _Lines, log: FrameLog) -> Iterator[Any]:
+def _whole(messages: Iterator[Any], lines: Lines, log: FrameLog) -> Iterator[Any]:
     """Yield messages up to a last line that is cut, which the library may take for a shorter frame, or pass over."""
     has_given_last = False
     while True:
@@ -349,7 +202,7 @@ def _is_whole(message: Any, row: str, kind: str) -> bool:
 
 
 def _blocks(
-    messages: Iterator[Any], log: FrameLog, zero_s: float, bus_of: Callable[[Any], int], lines: _Lines
+    messages: Iterator[Any], log: FrameLog, zero_s: float, bus_of: Callable[[Any], int], lines: Lines
 ) -> Iterator[Frames]:
     data_frames: list[Any] = []
     number = 0

@@ -9,12 +9,14 @@ from shaftprint.arrays import FloatArray
 from shaftprint.recording._channel import Channel
 
 _SIZES = (
-    99, 99.99, 888, 999, 999.25, 999.9, 999.99, 6999, 7999, 8888, 9999, 9999.9, 9999.99, 32767, 99999, 999999, 9999999,
-    2147483647, 1e30,
+    99, 99.99, 888, 999, 999.25, 999.9, 999.99, 6999, 7999, 8888, 9999, 9999.9, 9999.99, 32767, 99999, 999999, 1000000,
+    9999999, 2147483647, 1e30,
 )  # fmt: skip
 _MARKS = np.array([*_SIZES, *(-size for size in _SIZES), -32768.0, -2147483648.0, 65535.0])
 _KNOWN = frozenset(_MARKS.tolist())
 _FEWEST, _APART = 2, 3.0
+# One that alone stands in a column is as low as this.
+_ALONE = -999.0
 # So many rows show what a column is about.
 _ROWS = 100
 
@@ -45,6 +47,10 @@ class Marks:
     def sentence(self, name: str) -> str:
         """Return what has to be said of a column; empty where nothing has."""
         span = self.high - self.low
+        if len(self.counts) == 1 and not np.isfinite(span):
+            ((mark, count),) = self.counts.items()
+            is_alone = count >= _FEWEST and mark <= _ALONE
+            return f"{name}: {mark:.10g} stands in every row; no sensor may have been there." if is_alone else ""
         for mark, count in self.counts.items():
             apart = max(self.low - mark, mark - self.high)
             # beside a constant a positive number may be the other level

@@ -22,7 +22,9 @@ def unpack(source: Path, folder: Path) -> None:
     library = importlib.import_module("dwdatareader")
     with library.DWFile(str(source)) as file:
         channels = [_unpacked(library, file, number, key, folder) for number, key in enumerate(file)]
-        began = file.info.start_store_time.isoformat() if file.info.start_store_time.year > 1900 else None
+        # samples count from when measuring began; storing, as on a trigger, may have begun later
+        moment = file.info.start_measure_time
+        began = moment.isoformat() if moment.year > 1900 else None
     index = {"began": began, "channels": [channel.as_dict() for channel in channels]}
     (folder / INDEX).write_text(json.dumps(index), encoding="utf-8")
 

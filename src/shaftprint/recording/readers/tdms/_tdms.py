@@ -175,6 +175,13 @@ class _Source:
         step_s = increment_s(self.path, name, parts)
         rows = len(channel) // self.interleaved
         of_times = group if isinstance(group, _Group) and len(group.time) == rows else None
+        if step_s == _DEFAULT_STEP_S and of_times is None:
+            step_s = 1.0 / self.rate_hz if self.rate_hz is not None else step_s
+            taken = "was taken" if self.rate_hz is None else f"does not count beside the {self.rate_hz:g} Hz given"
+            self.gathered.remarks.append(
+                f"wf_increment is 1 s, which LabVIEW also writes where nobody sets it; it {taken}. State the rate "
+                "(--sample-rate) where it is not one sample a second."
+            )
         if step_s is not None:
             by_waveform = float(f"{1.0 / step_s:.12g}")
             if of_times is None or abs(by_waveform / of_times.clock.rate_hz - 1.0) <= _RATE_AGREEMENT:
