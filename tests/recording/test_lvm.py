@@ -144,6 +144,22 @@ def test_what_cannot_be_used_is_explained(tmp_path):
         _read(tmp_path, _head() + two)
 
 
+@pytest.mark.parametrize("block", [2, 3, 10, 120])
+def test_blocks_of_a_loop_that_begin_at_zero_each_are_told(tmp_path, block):
+    rows = [f"{1e-5 * (k % block):.6E}|{k}.5|{2 * k}.25" for k in range(600)]
+    with pytest.raises(RecordingError, match=rf"begin again in \d+ rows, first before row {block + 1}\. "):
+        _read(tmp_path, _head() + _segment(rows, step="1.000000E-5"))
+
+
+def test_a_step_that_nobody_set_is_told(tmp_path):
+    rows = [row[row.index("|") :] for row in ROWS]
+    text = _head(columns="No") + _segment(rows, step="1.000000")
+    recording, _ = _read(tmp_path, text)
+    assert "Delta_X is 1 s, which LabVIEW also writes where nobody sets it" in recording.remarks[0]
+    recording, _ = _read(tmp_path, text, sample_rate_hz=200.0)
+    assert (recording.channel("Voltage").rate_hz, recording.remarks) == (200.0, ())
+
+
 def test_times_that_contradict_a_printed_step_say_the_rate(tmp_path):
     # 51200 Hz: the step is printed as 0.000020 s, which would be 50000 Hz, in two segments 1 s apart
     rows = [f"{k / 51200.0:.6f}|{k % 7}|{k % 5}" for k in range(2000)]

@@ -240,7 +240,10 @@ def _uniform_clock(
     steps = steps[np.isfinite(steps)]
     step = float(np.median(steps)) if steps.size else np.nan
     if not step > 0.0:
-        raise RecordingError(f"{path}, {name}: expected ascending times, found a step of {step:g} s.")
+        forward = float(np.median(steps[steps > 0.0])) if np.any(steps > 0.0) else 0.0
+        raise _anew(path, name, np.flatnonzero(steps < 0.0) + 1, read, forward) or RecordingError(
+            f"{path}, {name}: expected ascending times, found a step of {step:g} s."
+        )
     holes = _holes(path, name, count, read, step, joins_doubled=joins_doubled)
     # when each stretch would begin on the clock, were nothing missing and no jump
     rows = np.array([0, *(hole.row for hole in holes)])
@@ -279,6 +282,8 @@ def _holes(path: Path, name: str, count: int, read: Times, step: float, *, joins
         return ()
     if rows.size > _MOST_HOLES + _MOST_HOLES_SHARE * count or not np.all(np.isfinite(jumps)):
         # a time that is missing or goes back is the cause, a step that is a little long is not
+        if blocks := _anew(path, name, rows[jumps < 0.0], read, step):
+            raise blocks
         worst = int(np.argmax(np.where(np.isfinite(jumps), jumps < 0.0, 2)))
         raise _not_uniform(path, name, step, float(jumps[worst]), int(rows[worst]))
     edges = np.array([0, *rows.tolist(), count])
@@ -314,6 +319,21 @@ def _odd_steps(count: int, read: Times, step: float) -> tuple[IntArray, FloatArr
         rows.append(start + wrong + 1)
         jumps.append(steps[wrong])
     return np.concatenate(rows), np.concatenate(jumps)
+
+
+def _anew(path: Path, name: str, rows: IntArray, read: Times, step: float) -> RecordingError | None:
+    """Return that times begin again at several rows, as where a loop writes blocks; None where they do not.
+
+    ``rows``: before which the times go back.
+    """
+    begin = float(read(0, 1)[0])
+    if rows.size <= _MOST_HOLES or any(abs(float(read(row, row + 1)[0]) - begin) > step for row in rows[:1000].tolist()):
+        return None
+    return RecordingError(
+        f"{path}, {name}: expected ascending times, found that they begin again in {rows.size} rows, first before row "
+        f"{int(rows[0]) + 1}. Where a loop writes blocks of rows, when each came is not in the file: let it write times "
+        "that go on, or dates. Where a logger was started anew, cut the file there."
+    )
 
 
 def _not_uniform(path: Path, name: str, step: float, jump: float, row: int) -> RecordingError:

@@ -278,6 +278,11 @@ class _Source:
             expect_one_rate(self.path, {"its times": clock.rate_hz, OF_HINT: self.hint_hz}, 0.0)
         if printed is None and self.hint_hz is None and rate_hz is not None:
             step = _of(head, "Delta_X", place)
+            if rate_hz == 1.0:
+                self.remarks.append(
+                    "Delta_X is 1 s, which LabVIEW also writes where nobody sets it. State the rate (--sample-rate) "
+                    "where it is not one sample a second."
+                )
             if abs(rate_hz * float(step.replace(",", ".")) - 1.0) > 1e-9:
                 self.remarks.append(
                     f"The rate of {rate_hz:g} Hz is the roundest one whose step is printed as {step} (Delta_X)."
