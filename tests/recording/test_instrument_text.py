@@ -46,7 +46,7 @@ LAYOUTS = {
     ),
     "tektronix, two figures more": (
         "Model,MDO4104C\nHorizontal Units,s,\nSample Interval,0.01,\nVertical Units,V,V\n,,\nLabel,,\nTIME,CH1,CH2\n" + _rows("{t:.5e},{u},{y}\n"),
-        ("", ""),
+        ("V", "V"),
     ),
     "a counter of milliseconds below the rate": ("Sample rate,100,Hz\nTime,u,y\n" + "".join(f"{10 * i},{u},{y}\n" for i, (u, y) in enumerate(zip(U, Y, strict=True))), ("", "")),
     "waveforms of labview": (

@@ -218,12 +218,46 @@ def test_a_table_of_pandas_is_told(tmp_path):
         (b"\0\x6b\0\x2b\0UniversalDataBinFile - Gantner Instruments\0", "GI.bench exports it as CSV"),
         (b'"TOB3","station","CR6"\r\n\0\1', "CardConvert writes TOA5"),
         ("time [s];n\n0,0;1\n".encode("utf-16-le"), "save it as UTF-8"),
+        (b"#9000000346WAVEDESC\0\0LECROY_2_3\0", "save it there as ASCII or MATLAB"),
+        (b"AG10\x10\0\0\0\1\0\0\0", "save them there as CSV"),
+        (b"PK\3\4\0\0version2PK\3\4\0\0metadataPK\3\4\0\0logic-1-1", "sigrok-cli -i FILE -O csv"),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:00ff\nsize 12345\n", "git lfs pull"),
+        (b"10;RX;0x0CF00400;8;0xF0;0x7D;\n20;RX;0x0CF00400;8;0xF0;0x7E;\n", "saves it as a candump log"),
     ],
 )
 def test_what_is_not_read_names_the_way(tmp_path, begin, remedy):
     path = tmp_path / "log.dat"
     path.write_bytes(begin)
     with pytest.raises(RecordingError, match=f"found none of them; .*{remedy}"):
+        read_recording(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "expected"),
+    [
+        ("log.csv", "version https://git-lfs.github.com/spec/v1\noid sha256:00ff\nsize 12345\n", "git lfs pull"),
+        ("engine.dbc", 'BU_: X\nBO_ 5 A: 8 X\n SG_ n : 0|16@1+ (1,0) [0|0] "rpm" X\n' * 3, "this one behind --dbc"),
+        ("log.csv", "ID,Data Bytes\n" + "0CF00400,F0 7D 7D 00 20 FF FF FF \n" * 9, "without times: log it with candump"),
+        ("log.csv", "Times;CH1;CH2\n" + "4.861 520 ms;1;0\n" * 9, "times with a unit in each row"),
+    ],
+)
+def test_text_that_is_no_table_names_the_way(tmp_path, name, text, expected):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(RecordingError, match=expected):
+        read_recording(tmp_path / name)
+
+
+def test_one_column_of_values_needs_a_rate_and_a_name_alone(tmp_path):
+    path, torque = tmp_path / "log.csv", 1500.0 + 0.25 * np.arange(200)
+    path.write_text("M_s [N m]\n" + "".join(f"{value}\n" for value in torque))
+    with pytest.raises(RecordingError, match=r'found one column of numbers "M_s \[N m\]" alone; pass its rate, sample'):
+        read_recording(path)
+    with read_recording(path, sample_rate_hz=50.0) as recording:
+        channel = recording.channel("M_s")
+        assert (channel.unit, channel.rate_hz) == ("N m", 50.0)
+        assert channel.values(0, 200) == pytest.approx(torque)
+    path.write_text("".join(f"{value}\n" for value in torque))
+    with pytest.raises(RecordingError, match=r"without a title alone; pass its rate and name, .*--columns u\)"):
         read_recording(path)
 
 

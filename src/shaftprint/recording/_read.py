@@ -27,6 +27,7 @@ OWN: tuple[Reader, ...] = (_native, _journal)
 
 # a log of ordinary service has a value a second or more often
 _SLOW_FILE_HZ = 0.2
+_NO_RECORDINGS = (".toml", ".dbc")
 # A rate that was stated is that of the file to this share.
 _AS_STATED = 1e-3
 
@@ -109,8 +110,8 @@ def _the_reader(path: Path, readers: Sequence[Reader] | None) -> Reader:
         if own is not None:
             return own
         readers = _all.READERS
-    # a vessel file in the place of the recording is text, and no table
-    claims = [reader for reader in readers if reader.is_mine(path) and path.suffix.lower() != ".toml"]
+    # a vessel file or a DBC file in the place of the recording is text, and no table
+    claims = [reader for reader in readers if reader.is_mine(path) and path.suffix.lower() not in _NO_RECORDINGS]
     if len(claims) == 1:
         return claims[0]
     if claims:

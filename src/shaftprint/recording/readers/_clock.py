@@ -327,12 +327,14 @@ def _anew(path: Path, name: str, rows: IntArray, read: Times, step: float) -> Re
     ``rows``: before which the times go back.
     """
     begin = float(read(0, 1)[0])
-    if rows.size <= _MOST_HOLES or any(abs(float(read(row, row + 1)[0]) - begin) > step for row in rows[:1000].tolist()):
+    if rows.size <= _MOST_HOLES or any(
+        abs(float(read(row, row + 1)[0]) - begin) > step for row in rows[:1000].tolist()
+    ):
         return None
     return RecordingError(
         f"{path}, {name}: expected ascending times, found that they begin again in {rows.size} rows, first before row "
-        f"{int(rows[0]) + 1}. Where a loop writes blocks of rows, when each came is not in the file: let it write times "
-        "that go on, or dates. Where a logger was started anew, cut the file there."
+        f"{int(rows[0]) + 1}. Where a loop writes blocks of rows, when each came is not in the file: let it write "
+        "times that go on, or dates. Where a logger was started anew, cut the file there."
     )
 
 

@@ -14,7 +14,12 @@ _NMEA_0183 = rb"[^\r\n$!]{0,80}[$!][A-Z]{4,5},[^\r\n]*\*[0-9A-F]{2}"
 _IKONVERT = rb"!PDGY,\d+,\d,\d+,\d+,[\d.]+,"
 _BUSMASTER = rb"\*{3}(?:BUSMASTER|PROTOCOL) "
 _VCD = rb"\$(?:date|version|timescale|scope|var|comment|enddefinitions)\b"
-_FRAMES_WITHOUT_TIMES = rb"(?:\w*can\d+ +|<0x)[0-9a-fA-F]{3,8}>? +\[\d\] +[0-9a-fA-F]{2}"
+_FRAMES_WITHOUT_TIMES = (
+    rb"(?:(?:\w*can\d+ +|<0x)[0-9a-fA-F]{3,8}>? +\[\d\] +[0-9a-fA-F]{2}"
+    rb"|[0-9A-F]{8},[0-9A-F]{2}(?: [0-9A-F]{2}){0,7} *\r?$)"
+)
+_MICROCHIP = rb"\d+;[RT]X;0x[0-9A-F]{3,8};\d;"
+_GIT_LFS = rb"(?:version https://git-lfs|oid sha256:|size \d+$)"
 _OF_LINES = {
     _NMEA_0183: "sentences of NMEA 0183, which come about once a second and are not read: log the NMEA 2000 bus itself "
     "(candump -l, BLF, ASC, TRC), or write the values as CSV with a column of times",
@@ -23,10 +28,13 @@ _OF_LINES = {
     _VCD: "edges of a logic analyser as VCD, which is not read: write them as CSV, a row of time [s] and level each; "
     "times count in its $timescale",
     _FRAMES_WITHOUT_TIMES: "frames of a CAN bus without times: log it with candump -l",
+    _MICROCHIP: "frames of a CAN bus in a form that is not read: SavvyCAN loads it and saves it as a candump log",
+    _GIT_LFS: "a pointer of Git LFS in place of the file: git lfs pull",
 }
 """What lines of text begin as, and what they are."""
 # Gantner's name stands behind its length
 _UDBF = b"UniversalDataBinFile"
+_LECROY = b"WAVEDESC"
 _SQLITE, _ZIP = b"SQLite format 3", b"PK\x03\x04"
 _BY_BYTES = {
     _SQLITE: "it is an SQLite database: export the table as CSV (sqlite3 -header -csv)",
@@ -55,6 +63,7 @@ _BY_BYTES = {
     b"\x89MCAP": "it is a ROS log: PlotJuggler exports it as CSV",
     b"#ROSBAG": "it is a ROS log: PlotJuggler exports it as CSV",
     b'"TOB': "it is Campbell's binary form: in LoggerNet, CardConvert writes TOA5",
+    **dict.fromkeys((b"RG01", b"RG03", b"AG01", b"AG03", b"AG10"), "an oscilloscope's samples: save them there as CSV"),
     b"RIFF": "it is a sound file: scipy.io.wavfile reads it (24 bits come times 256), scipy.io.savemat writes the "
     "samples with fs",
 }
@@ -63,6 +72,7 @@ _BY_NAMES = {
     b"[Content_Types].xml": f"it is a spreadsheet: {_TABLE}",
     b"docProps/": f"it is a spreadsheet: {_TABLE}",
     b"opendocument.spreadsheet": f"it is a spreadsheet: {_TABLE}",
+    b"logic-1": "it is a session of sigrok: sigrok-cli -i FILE -O csv; the rate stands above its rows",
     b".npy": "it holds arrays of NumPy: scipy.io.savemat writes them with their fs or t",
 }
 _BY_ENDING = {
@@ -70,6 +80,7 @@ _BY_ENDING = {
     (".zip",): _ARCHIVE,
     (".toml",): "it is a file of settings, as of a vessel, a campaign or a drive: name the recording first, and this "
     "one behind --vessel, --campaign or --drive",
+    (".dbc", ".arxml", ".kcd", ".sym"): "it says what frames hold: name the log first, and this one behind --dbc",
     (".tdm", ".tdx"): "National Instruments' TDM: in DIAdem or LabVIEW save it as TDMS",
     (".lms", ".ldsf", ".sdf"): "Simcenter Testlab: export time data as MATLAB or as UFF 58",
     (".raw",): "imc in a form that is not read: in FAMOS or imc STUDIO save it as .dat, MATLAB or MDF 4",
@@ -102,6 +113,8 @@ def remedy(path: Path) -> str:
     by_ending = next((words for endings, words in _BY_ENDING.items() if ending in endings), None)
     if begin.startswith(_SQLITE) and b"arbitration_id" in begin:
         return "it holds the frames of a CAN bus: can_logconvert FILE log.blf makes a log of them, which is read"
+    if _LECROY in begin[:_SHORT]:
+        return "it is an oscilloscope's waveform: save it there as ASCII or MATLAB"
     if _UDBF in begin[:_SHORT]:
         return "it is Gantner's UDBF: GI.bench exports it as CSV"
     if begin.startswith(_ZIP):

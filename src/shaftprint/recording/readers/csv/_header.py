@@ -1,6 +1,5 @@
 """The first lines of a text file: what separates the columns, what they are called, in which unit, which are times."""
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -24,6 +23,7 @@ from shaftprint.recording.readers.csv._fields import (
 )
 from shaftprint.recording.readers.csv._head_beside import head_beside
 from shaftprint.recording.readers.csv._head_facts import HeadFacts, head_facts, is_fact
+from shaftprint.recording.readers.csv._lone_column import lone_table
 from shaftprint.recording.readers.csv._long_form import (
     expect_a_column_a_signal,
     expect_one_table,
@@ -54,8 +54,6 @@ _COUNTERS = (
     "id", "rn", "scan", "stepcount", "step", "count", "store no.", "counter", "zeile", "unnamed: 0",
 )  # fmt: skip
 _SHOWN = 80
-# a value as it is shown: 25.5 kN m
-_WITH_UNIT = re.compile(r"[+-]?\d+([.,]\d+)? ?[A-Za-z°%µ][^\d]*")
 # An example of names for as many columns as this names each.
 _MOST_NAMED = 12
 
@@ -162,7 +160,9 @@ def read_header(
     expect_plain_values(path, lines)
     beside = head_beside(lines)
     lines = lines if beside is None else beside.rows
-    table = _expect_table(path, lines, delimiter, (0 if renamed else len(asked)) or width_of_export(lines))
+    table = _expect_table(
+        path, lines, delimiter, (0 if renamed else len(asked)) or width_of_export(lines), has_rate=has_rate
+    )
     if beside is None:
         expect_one_table(path, lines, table)
     units: list[str]
@@ -221,7 +221,7 @@ def read_header(
     )
 
 
-def _expect_table(path: Path, lines: Sequence[str], delimiter: str | None, width: int) -> Table:
+def _expect_table(path: Path, lines: Sequence[str], delimiter: str | None, width: int, *, has_rate: bool) -> Table:
     """Return the table of a file.
 
     Raises RecordingError if there is none, or not one of the number of columns that the caller names.
@@ -236,44 +236,7 @@ def _expect_table(path: Path, lines: Sequence[str], delimiter: str | None, width
                 + (f": {shown[:_SHOWN]}" if shown else "")
                 + '; name each of them in order, or only some with their titles, as "Datum/Uhrzeit=time".'
             )
-    return table or _lone(path, lines, delimiter, width)
-
-
-def _lone(path: Path, lines: Sequence[str], delimiter: str | None, width: int) -> Table:
-    """Return the table of a column of times alone, or of titles without a row.
-
-    Raises RecordingError if the file is neither.
-    """
-    table = find_table(lines, width=1, delimiter=delimiter or ";")
-    if table is not None and table.first > 0 and is_time_title(_plain_title(lines[table.first - 1])):
-        return table
-    if width:
-        raise RecordingError(f"{path}: expected a row of {width} columns, as the hint columns says, found none.")
-    titles = next((line for line in lines if line.strip()), "")
-    marks = [mark for mark in (";", "\t", ",") if mark in titles]
-    if len(marks) != 1 and delimiter is None:
-        if is_time_title(_plain_title(titles)):
-            return Table(delimiter=";", first=1, width=1, kinds=NUMBER, rows=())
-        what = "several of them" if marks else "none of them"
-        raise RecordingError(
-            f"{path}, line 1: expected columns separated by semicolon, tab, comma or white space, with rows of "
-            f'numbers, found {what} in "{printable(titles.strip())[:_SHOWN]}"; pass delimiter= (--delimiter).'
-        )
-    mark = delimiter or marks[0]
-    count = len(split_row(titles, mark))
-    with_unit = next((field for line in lines for field in split_row(line, mark) if _WITH_UNIT.fullmatch(field)), None)
-    if with_unit is not None:
-        raise RecordingError(
-            f'{path}: expected numbers, found "{printable(with_unit)[:_SHOWN]}"; write the values without their units, '
-            "which may change from row to row (Grafana: switch off Formatted data)."
-        )
-    return Table(
-        delimiter=mark, first=lines.index(titles) + 1 if titles else 0, width=count, kinds=NUMBER * count, rows=()
-    )
-
-
-def _plain_title(line: str) -> str:
-    return line.lstrip("\ufeff").lstrip("#%").strip().strip('"')
+    return table or lone_table(path, lines, delimiter, width, has_rate=has_rate)
 
 
 def _expect_titles(path: Path, lines: Sequence[str], table: Table, titles: Sequence[str]) -> None:

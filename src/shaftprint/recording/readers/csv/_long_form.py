@@ -50,6 +50,12 @@ _BESIDE_VALUES = (
         "the times of a serial monitor",
         "make columns of them, sed 's/ -> /,/', and name these with columns= (--columns).",
     ),
+    (
+        re.compile(r"(?:^|[;,\t])\d[\d., ]* ?(?:ns|us|µs|ms|s)(?=[;,\t])"),
+        1,
+        "times with a unit in each row",
+        "write them in one unit, without it, under the title time [s].",
+    ),
 )
 """How lines show names beside values, how often in each, what that is, and what to do."""
 # Fewer rows of numbers may stand in a head.

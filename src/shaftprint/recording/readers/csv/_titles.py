@@ -42,6 +42,7 @@ _UNIT_ROWS = ("vunit", "v unit", "unit", "units", "vert units", "vertical units"
 # what stands in brackets is no unit, but says what something is
 _REMARK = ": "
 _REMARKS = ("comment", "comments", "remark", "remarks")
+_SCOPE_UNITS = "vertical units"
 _TOA5, _TOA5_ROWS = ("TOA5", "TOB1"), 4
 
 
@@ -71,10 +72,17 @@ def titles_and_units(lines: Sequence[str], table: Table) -> tuple[list[str], lis
         return [_fields(above[-1], table), []] if above else [[], []]  # type: ignore[return-value]
     place = _place_of_titles(rows)
     # words may stand between titles and units
-    units = next((row for row in reversed(rows[:place]) if _are_units(row, rows[place])), [])
+    units = next((row for row in reversed(rows[:place]) if _are_units(row, rows[place])), _of_scope(above, table))
     return _with_words(rows[place], [row for row in rows[:place] if row is not units]), [
         _unit(field) for field in units
     ]
+
+
+def _of_scope(above: Sequence[str], table: Table) -> list[str]:
+    """Return the units that Tektronix' oscilloscopes state far above the titles; none of other files."""
+    rows = (_fields(line, table) for line in above)
+    row = next((row for row in rows if plain_key(row[0] if row else "") == _SCOPE_UNITS), [])
+    return ["", *row[1:]] if len(row) == table.width else []
 
 
 def _with_words(titles: list[str], below: Sequence[Sequence[str]]) -> list[str]:
