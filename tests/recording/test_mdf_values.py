@@ -99,6 +99,30 @@ def test_times_before_the_date_of_the_file(tmp_path, first_s, shift_s):
         assert (recording.began.replace(tzinfo=None) - began).total_seconds() == pytest.approx(shift_s, abs=1e-5)
 
 
+@pytest.mark.parametrize("rate_hz", [10.0, 100.0])
+def test_what_a_cut_makes_at_its_ends_is_no_sample(tmp_path, rate_hz):
+    times = 0.127 / rate_hz + np.arange(60.0 * rate_hz) / rate_hz
+    speed = 1200.0 + 50.0 * np.sin(times)
+    with asammdf.MDF(version="4.10") as file:
+        file.append([asammdf.Signal(speed, times, name="n", unit="rpm")])
+        file.append([asammdf.Signal(np.arange(600.0), 0.1 * np.arange(600), name="M_s", unit="Nm")])
+        with file.cut(start=6.0, stop=48.0) as cut:
+            cut.save(tmp_path / "cut.mf4")
+    with read_recording(tmp_path / "cut.mf4") as recording:
+        channel = recording.channel("n")
+        kept = (times > 6.0) & (times < 48.0)
+        assert channel.rate_hz == pytest.approx(rate_hz, rel=1e-8)
+        assert channel.time_s(0, channel.count) == pytest.approx(times[kept], abs=1e-6)
+        assert channel.values(0, channel.count) == pytest.approx(speed[kept])
+        assert channel.clock_jumps == ()
+        assert recording.remarks == (
+            "A sample between two steps of the clock, as a program makes it at either end of a cut, was left out.",
+        )
+        # cut between samples of its own, nothing was made
+        torque = recording.channel("M_s")
+        assert torque.values(0, torque.count) == pytest.approx(np.arange(60.0, 481.0))
+
+
 def test_a_clock_that_is_set_back_is_a_jump(tmp_path):
     times = TIMES.copy()
     times[100:] -= 0.5

@@ -206,6 +206,22 @@ def _message_clock(count: int, read: Times) -> SampleClock | None:
     return SampleClock(rate_hz=float(f"{near / seconds:.6g}"), start_s=first, stamps=read, is_uneven=True)
 
 
+def rows_between_cuts(count: int, read: Times) -> tuple[int, int]:
+    """Return the first row on the clock, and the one behind the last: programs that cut a file make a row at each end.
+
+    ``count``, ``read``: as for `uniform_clock`.
+    """
+    if count < _FEWEST_OF_A_PART:
+        return 0, count
+    begin, end = np.diff(read(0, min(count, 1001))), np.diff(read(max(count - 1001, 0), count))
+    step = float(np.median(begin))
+    is_off = [
+        bool(0.0 < odd < (1.0 - _WHOLE) * step and np.all(np.abs(others - step) <= _WHOLE * step))
+        for odd, others in ((begin[0], begin[1:-1]), (end[-1], end[1:-1]))
+    ]
+    return int(is_off[0]), count - is_off[1]
+
+
 def printed_step(times: FloatArray) -> float:
     """Return the last decimal with which times are printed [s]; 0 where they have more than six."""
     for decimals in range(_MOST_DECIMALS + 1):

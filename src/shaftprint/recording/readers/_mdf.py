@@ -2,9 +2,10 @@
 
 import contextlib
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import datetime
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._clock import SampleClock, clock_of_times, kept_clocks, on_clock
+from shaftprint.recording.readers._clock import SampleClock, clock_of_times, kept_clocks, on_clock, rows_between_cuts
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._epoch import UNDATED_YEAR
 from shaftprint.recording.readers._extra import library
@@ -44,6 +45,7 @@ _ALL_INVALID, _HAS_INVALIDATION_BITS = 1, 2
 _UNDATED_TOO = datetime(1980, 1, 1)  # noqa: DTZ001 - the file has no zone
 # MDF 3, block CC: tables of texts
 _TEXTS_OF_MDF_3 = (11, 12)
+_AT_CUTS = "A sample between two steps of the clock, as a program makes it at either end of a cut, was left out."
 
 
 def is_mine(path: Path) -> bool:
@@ -162,14 +164,18 @@ def _gather(
     named = [(f"group {place.group}", place.described.name) for place in places]
     names = unique_names(named + list(() if taken is None else taken.named))
 
+    rows_of = cache(partial(_rows, path, file))
+
     def clock(group: int) -> SampleClock:
-        return _clock(path, file, group, rate_hz)
+        return _clock(path, file, group, rate_hz, rows_of)
 
     clock_of = kept_clocks(clock)
     for place, name in zip(places, names[: len(places)], strict=True):
 
         def make(place: _Place = place, name: str = name) -> Channel:
-            return _channel(path, place, opened, name, clock_of(place.group))
+            clock, rows = clock_of(place.group), rows_of(place.group)
+            gathered.remarks.extend([_AT_CUTS] * (rows != (0, _count(path, file, place.group))))
+            return _channel(path, place, opened, name, clock, *rows)
 
         gathered.add(name, make)
     if taken is not None:
@@ -233,11 +239,13 @@ def _count(path: Path, file: Any, group: int) -> int:
     return count
 
 
-def _clock(path: Path, file: Any, group: int, rate_hz: float | None) -> SampleClock:
+def _clock(
+    path: Path, file: Any, group: int, rate_hz: float | None, rows_of: Callable[[int], tuple[int, int]]
+) -> SampleClock:
     """Take the clock of the group's master, which must count seconds, else the hint."""
-    count = _count(path, file, group)
     master = file.masters_db.get(group)
     if master is None:
+        _count(path, file, group)
         if rate_hz is None:
             raise RecordingError(f"{path}: expected a master channel of times, found none; give the sample rate.")
         return SampleClock(rate_hz=rate_hz, start_s=0.0)
@@ -246,18 +254,35 @@ def _clock(path: Path, file: Any, group: int, rate_hz: float | None) -> SampleCl
     if int(getattr(channel, "sync_type", _TIME)) != _TIME:
         raise RecordingError(f"{path}: expected a master channel of times, found one of angles, distances or numbers.")
 
-    def read(start: int, stop: int) -> FloatArray:
-        times = file.get_master(group, record_offset=start, record_count=stop - start)
-        return np.asarray(times, dtype=np.float64)
-
+    first, last = rows_of(group)
     with told_as_damage(path, NAME):
-        return clock_of_times(path, f"master {channel.name}", count, read)
+        return clock_of_times(
+            path,
+            f"master {channel.name}",
+            last - first,
+            lambda start, stop: _times(file, group, first + start, first + stop),
+        )
 
 
-def _channel(path: Path, place: _Place, opened: Opened, name: str, clock: SampleClock) -> Channel:
+def _times(file: Any, group: int, start: int, stop: int) -> FloatArray:
+    return np.asarray(file.get_master(group, record_offset=start, record_count=stop - start), dtype=np.float64)
+
+
+def _rows(path: Path, file: Any, group: int) -> tuple[int, int]:
+    """Return the first row of a group and the one behind its last, without what was made where the file was cut."""
+    count = _count(path, file, group)
+    if file.masters_db.get(group) is None:
+        return 0, count
+    with told_as_damage(path, NAME):
+        return rows_between_cuts(count, partial(_times, file, group))
+
+
+def _channel(
+    path: Path, place: _Place, opened: Opened, name: str, clock: SampleClock, first_row: int, last_row: int
+) -> Channel:
     file, records, group, index = place.file, place.records, place.group, place.index
     described = place.described
-    count = _count(path, file, group)
+    count = last_row - first_row
     expect_in_record(path, name, file.groups[group].channel_group, described)
     conversion = described.conversion
     kind = -1 if conversion is None else int(conversion.conversion_type)
@@ -267,7 +292,7 @@ def _channel(path: Path, place: _Place, opened: Opened, name: str, clock: Sample
     flags = int(getattr(described, "flags", 0))
     has_bits = bool(flags & (_ALL_INVALID | _HAS_INVALIDATION_BITS)) and _is_v4(file)
     is_all_invalid = has_bits and not flags & _HAS_INVALIDATION_BITS
-    first, _ = records.samples(group, index, 0, min(count, 2), raw=True)
+    first, _ = records.samples(group, index, first_row, first_row + min(count, 2), raw=True)
     if first.ndim != 1 or first.dtype.kind not in "fiu":
         raise RecordingError(f"{path}, channel {name}: expected one real number a sample, found {_shape(first)}.")
     is_counts = first.dtype == np.int16 and not has_bits and (conversion is None or kind == _LINEAR)
@@ -281,7 +306,7 @@ def _channel(path: Path, place: _Place, opened: Opened, name: str, clock: Sample
 
     def source(start: int, stop: int) -> NDArray[Any]:
         with opened.reading(name), told_as_damage(path, NAME):
-            values, invalid = records.samples(group, index, start, stop, raw=raw)
+            values, invalid = records.samples(group, index, first_row + start, first_row + stop, raw=raw)
             if len(values) != stop - start:
                 raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are missing; is the file cut?")
             if is_counts:
