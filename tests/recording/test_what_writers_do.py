@@ -237,7 +237,7 @@ def test_what_is_not_read_names_the_way(tmp_path, begin, remedy):
     [
         ("log.csv", "version https://git-lfs.github.com/spec/v1\noid sha256:00ff\nsize 12345\n", "git lfs pull"),
         ("engine.dbc", 'BU_: X\nBO_ 5 A: 8 X\n SG_ n : 0|16@1+ (1,0) [0|0] "rpm" X\n' * 3, "this one behind --dbc"),
-        ("log.csv", "ID,Data Bytes\n" + "0CF00400,F0 7D 7D 00 20 FF FF FF \n" * 9, "without times: log it with candump"),
+        ("log.csv", "ID,Data Bytes\n" + "0CF00400,F0 7D 7D 00 20 FF FF FF \n" * 9, "without times: log it"),
         ("log.csv", "Times;CH1;CH2\n" + "4.861 520 ms;1;0\n" * 9, "times with a unit in each row"),
     ],
 )
