@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 SECONDS_PER_MINUTE = 60.0
 SECONDS_PER_HOUR = 3600.0
 M_S_PER_KNOT = 1852.0 / SECONDS_PER_HOUR
-MILLI, PPM = 1e3, 1e6
-"""How many thousandths and millionths there are in one."""
+PERCENT, MILLI, PPM = 100.0, 1e3, 1e6
+"""How many hundredths, thousandths and millionths there are in one."""
 
 # Ways in which loggers and people write the units that vessel files know.
 _SPELLINGS = {

@@ -6,11 +6,11 @@ from dataclasses import replace
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.errors import IdentificationError
 from shaftprint.time_domain._record import Record
+from shaftprint.units import PERCENT
 
 # The first starts leave more than this share of the outputs unexplained where one of them is turned, and with that
 # turned back less than this share of it.
 _LEFT, _OF_THAT = 0.25, 0.2
-_PERCENT = 100.0
 
 
 def expect_no_turned_output(
@@ -30,8 +30,8 @@ def expect_no_turned_output(
         then = left_of(turned)
         if then < _OF_THAT * left:
             raise IdentificationError(
-                f'channel "{output.channel}": {one.structure.name} explains {_PERCENT * (1.0 - then):.0f} % of the '
-                f"records where it counts the other way round, and {_PERCENT * (1.0 - left):.0f} % as it is; turn the "
+                f'channel "{output.channel}": {one.structure.name} explains {PERCENT * (1.0 - then):.0f} % of the '
+                f"records where it counts the other way round, and {PERCENT * (1.0 - left):.0f} % as it is; turn the "
                 f"sensor, or state reversed = {'false' if output.reversed else 'true'} for {output.name} in the drive "
                 "file."
             )

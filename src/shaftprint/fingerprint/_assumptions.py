@@ -13,12 +13,11 @@ from shaftprint.identify.search._conditional_minimum import Conditional
 from shaftprint.identify.uncertainty._profile import Interval
 from shaftprint.models._combination import Combination
 from shaftprint.spelling import listed
-from shaftprint.units import MILLI
+from shaftprint.units import MILLI, PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.vessel._vessel import Vessel
 
-PERCENT = 100.0
 # How far what the vessel file states may be off beside its deviation: rows that were forgotten, a torque that falls
 # with the speed as in the maps of some engines.
 OTHER_INERTIAS, STEEPEST_ENGINE = (0.8, 1.2), -0.5

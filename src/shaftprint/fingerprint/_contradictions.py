@@ -12,12 +12,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from shaftprint.fingerprint._physical import GAUGE_ZERO, PERCENT
+from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.reasons import Reason
 from shaftprint.signals._scale_reasons import FAR, propeller_reason, scale_reasons, what_fits
 from shaftprint.signals.levels._gauge_zero import zero_between, zero_of_share, zero_reason
 from shaftprint.signals.levels._speed_scale import ScaleEvidence, load_over_expected
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign

@@ -18,6 +18,7 @@ from shaftprint.identify.likelihood._prior import PRIOR_OF
 from shaftprint.identify.uncertainty._budget import Budget
 from shaftprint.identify.uncertainty._profile import Profile
 from shaftprint.reasons import Reason
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.vessel._vessel import Vessel
@@ -38,7 +39,6 @@ MOSTLY = 0.5
 MOST_NAMED = 4
 # What the test itself measures: sources whose names begin so.
 MEASURED = ("noise of ", "working-point ", LOAD_WANDER)
-PERCENT = 100.0
 _NONE: Mapping[str, Estimate] = MappingProxyType({})
 AMPLE, SMALL = 2.0, 1.3
 GAIN_MARGIN = "gain margin"

@@ -39,12 +39,12 @@ from shaftprint.identify.uncertainty._profile import Interval
 from shaftprint.models._combination import Combination
 from shaftprint.models._structure import Structure
 from shaftprint.normalisation import Normalisation
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.signals._working_points import WorkingPoint
     from shaftprint.vessel._vessel import Vessel
 
-PERCENT = 100.0
 IDEAL_SLOPE = 2.0
 # A number whose deviation is a smaller share of that of its parameter is told by what cancels in it.
 _OF_ONE = 0.8

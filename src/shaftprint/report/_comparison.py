@@ -22,6 +22,7 @@ from shaftprint.report.figures._bode import bode_chart
 from shaftprint.report.figures._differences import difference_chart, shown_names
 from shaftprint.report.sections._comparison_cover import comparison_cover, not_alike
 from shaftprint.report.sections._sections import Picture, Section
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from shaftprint.report._curve import Curve
 
 FEWEST = 2
-PERCENT = 100.0
 
 
 def render_comparison(

@@ -32,7 +32,7 @@ from shaftprint.service._vetting import (
     torque_is_held,
     way_on,
 )
-from shaftprint.units import SECONDS_PER_HOUR, rpm_from_rev_s
+from shaftprint.units import PERCENT, SECONDS_PER_HOUR, rpm_from_rev_s
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
@@ -41,7 +41,6 @@ if TYPE_CHECKING:
 TOLD = (GAUGE_K_P.name, GAUGE_K_I.name, T_D.name, T_SP.name, TAU_DN.name, GAUGE_OMEGA_N.name)
 """Numbers of which the table says what each segment tells."""
 _TOO_LOUD = 3.0
-_PERCENT = 100.0
 # Segments that are simulated at most; of a longer log every second, third and so on.
 _MOST_SIMULATED = 120
 _LIMIT = "meets a limit of the torque, where noise decides how long: the fit leaves it out if it finds that too"
@@ -91,7 +90,7 @@ class Scan(Shown):
         if not self.accuracy:
             return f"{saw}; {FEWEST_SEGMENTS} and more are needed: give more logs."
         gain, delay, inertia = (
-            f"{_PERCENT * self.accuracy[name] / abs(self.values[name]):.2g} %"
+            f"{PERCENT * self.accuracy[name] / abs(self.values[name]):.2g} %"
             for name in (GAUGE_K_P.name, "delay", TAU_DN.name)
         )
         return (
@@ -291,6 +290,6 @@ def _row(segment: Segment, score: Score | None, line: LeverLine, model: ServiceM
         # what it would be known to by this segment alone, were all other numbers known
         information = 0.0 if score is None else float(score.information[FREE.index(name), FREE.index(name)])
         row[f"{name}_percent"] = (
-            f"{_PERCENT / np.sqrt(information) / abs(model.values[name]):.3g}" if information > 0.0 else ""
+            f"{PERCENT / np.sqrt(information) / abs(model.values[name]):.3g}" if information > 0.0 else ""
         )
     return row

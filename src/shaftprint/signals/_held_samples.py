@@ -16,7 +16,7 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
 from shaftprint.reasons import Reason
 from shaftprint.signals.conditioning._runs import Runs
-from shaftprint.units import MILLI
+from shaftprint.units import MILLI, PERCENT
 
 # A change by more steps than this is none to the next step.
 _ONE_STEP = 1.5
@@ -35,7 +35,6 @@ _LEAST_LATE_S = 0.0005
 _STEADY, _ALIKE, _FEW_SAMPLES, _FEW_STEADY = 0.7, 0.25, 4, 0.9
 # A hold that the vessel file states, to this share.
 _AS_STATED = 0.3
-_PERCENT = 100.0
 _LONG_S = 0.1
 
 
@@ -68,7 +67,7 @@ class HeldSamples:
                 f"so that {late}: log it where it is made, or at the rate at which it is sent."
             )
         return (
-            f"Channel {self.channel} stands still for {_PERCENT * self.share:.2g} % of the time, in {self.runs} runs "
+            f"Channel {self.channel} stands still for {PERCENT * self.share:.2g} % of the time, in {self.runs} runs "
             f"of about {_duration(self.hold_s)}: it keeps its last value now and then, as radio telemetry does, and "
             f"{late}; look for the lost samples in the link, and test again."
         )

@@ -20,7 +20,7 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import stated
-from shaftprint.units import rev_s_from_rpm
+from shaftprint.units import PERCENT, rev_s_from_rpm
 
 if TYPE_CHECKING:
     from shaftprint.signals._channel_signals import ChannelSignal
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from shaftprint.survey._survey import Survey
 
 TORQUE = "M_s"
-PERCENT = 100.0
 # Times in which the wash of a propeller may get to the other and follow it [s]: two to four diameters at 2 to 10 m/s.
 _DELAYS_S = np.linspace(0.0, 1.5, 13)
 _LAGS_S = np.geomspace(0.05, 3.0, 13)

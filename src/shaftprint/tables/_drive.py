@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.digits import p_value_text, rounded, stated, unit_text, with_deviation
 from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.bench._structures import TimeComparison
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
     from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
     from shaftprint.models._parameter import Parameter
 
-PERCENT = 100.0
 
 NOTE = (
     "FitPercent is 100 % where nothing is left; its ceiling is what a perfect model would have beside this noise. The "

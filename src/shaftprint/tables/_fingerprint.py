@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from shaftprint.digits import fine_unit, interval, p_value_text, plain, to_digit_of, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
 from shaftprint.plain_table import MEANING, Column, Symbol, Table, numbers, texts
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint, Quality
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
     from shaftprint.identify.fit._identification import Identification
     from shaftprint.identify.uncertainty._budget import Budget, BudgetRow
 
-PERCENT = 100.0
 # A share that is printed as 0 % says as much.
 SMALLEST_PERCENT = 0.5
 NO_TRUTH: Mapping[str, float] = {}

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain, rounded, unit_text, with_deviation
 from shaftprint.plain_table import Table, numbers, texts
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.torsion._expected_inertia import ExpectedInertia, ExpectedValue, InertiaComparison
@@ -13,7 +14,6 @@ if TYPE_CHECKING:
     from shaftprint.torsion._two_masses import TwoMasses
     from shaftprint.vessel._vessel import Vessel
 
-PERCENT = 100.0
 # Sources with a smaller share of the variance are put together.
 SMALL_SHARE = 0.01
 ASSUMED = "assumed"

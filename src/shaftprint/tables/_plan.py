@@ -8,6 +8,7 @@ from shaftprint.design.plan._plan import length_words
 from shaftprint.digits import fine_unit, interval, plain, rounded, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
 from shaftprint.plain_table import Symbol, Table, numbers, texts
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.design.inputs._lever import Lever
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from shaftprint.design.views._abort_card import AbortCard
     from shaftprint.identify.fit._estimate import Estimate
 
-PERCENT = 100.0
 _FIRST_ORDER = "Predicted to first order, for the middle of the possible ships"
 
 

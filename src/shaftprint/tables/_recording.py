@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain, rounded, with_deviation
 from shaftprint.plain_table import Table, numbers, texts
-from shaftprint.units import MILLI, PPM
+from shaftprint.units import MILLI, PERCENT, PPM
 
 if TYPE_CHECKING:
     from shaftprint.clocks._alignment import Alignment
@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from shaftprint.recording._levels import Levels
     from shaftprint.recording._recording import Recording
 
-PERCENT = 100.0
 # A channel that spends more than this share of its time at its highest or lowest value may be cut off there.
 CUT_OFF = 0.01
 # Pulses are at their ends most of the time: a channel with both ends that often is one of pulses.

@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.digits import plain, with_deviation
 from shaftprint.plain_table import Column, Symbol, Table, numbers, texts
-from shaftprint.units import MILLI, SECONDS_PER_MINUTE
+from shaftprint.units import MILLI, PERCENT, SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
     from shaftprint.signals._channel_signals import SpeedSignal
@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from shaftprint.spectra._spectra import Spectra
 
 DEGREES_PER_REV = 360.0
-PERCENT = 100.0
 
 
 def calibration_table(signals: "Signals") -> Table:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.digits import p_value_text, plain, rounded, with_deviation
 from shaftprint.plain_table import Table, numbers, texts
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.identify.comparison._comparison import Candidate, StructureComparison
@@ -12,7 +13,6 @@ if TYPE_CHECKING:
     from shaftprint.identify.fit._estimate import Estimate
     from shaftprint.identify.fit._identification import Identification
 
-PERCENT = 100.0
 HOLD_OUT_NOTE = (
     " The last two columns are the mean squared error of held-out lines, in units of their noise variance: found, and "
     "predicted for a right structure."

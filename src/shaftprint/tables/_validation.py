@@ -6,15 +6,13 @@ from typing import TYPE_CHECKING
 
 from shaftprint.digits import p_value_text, plain, rounded, with_deviation
 from shaftprint.plain_table import Table, numbers, texts
-from shaftprint.units import MILLI
+from shaftprint.units import MILLI, PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.validation._step_comparison import StepNumber
     from shaftprint.validation._validation import ExcerptComparison, Validation
     from shaftprint.validation.measures._delay import RemainingDelay
     from shaftprint.validation.measures._misfit import Misfit
-
-PERCENT = 100.0
 
 
 def misfit_table(validation: "Validation") -> Table:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from shaftprint.spelling import listed
+from shaftprint.units import PERCENT
 from shaftprint.validation._model import Model
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber
@@ -12,7 +13,6 @@ from shaftprint.validation._validation import ExcerptComparison
 from shaftprint.validation.measures._misfit import Misfit
 from shaftprint.validation.measures._noise_pieces import QuietNoise
 
-PERCENT = 100.0
 WORDS = {"n": "speed", "M_s": "torque"}
 # So many excerpts are described, with so many numbers each; the table has them all.
 _MOST = 3

@@ -22,11 +22,10 @@ from shaftprint.identify.uncertainty._bootstrap import Bootstrap
 from shaftprint.identify.uncertainty._parameter_spread import ParameterSpread, spread_of
 from shaftprint.models._step_response import step_response
 from shaftprint.models._structure import Structure
-from shaftprint.units import decibel
+from shaftprint.units import PERCENT, decibel
 
 DECIBEL_PER_NEPER = 20.0 / np.log(10.0)
 COVERAGE = 0.95
-PERCENT = 100.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

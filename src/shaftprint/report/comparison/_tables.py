@@ -8,6 +8,7 @@ from shaftprint.distributions import NORMAL_95
 from shaftprint.plain_table import MEANING, Column, Symbol, Table, numbers, texts
 from shaftprint.tables._conditions import ship_text, tested_text, water_facts
 from shaftprint.tables._fingerprint import limits
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from shaftprint.identify.fit._estimate import Estimate
     from shaftprint.report.comparison._differences import Difference
 
-PERCENT = 100.0
 NOT_THERE = "–"
 MOVING = ": normalised numbers, which move with the working point"
 

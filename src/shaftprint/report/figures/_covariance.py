@@ -8,12 +8,12 @@ import numpy as np
 from shaftprint.plain_table import Symbol
 from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Bars, Fields, Mark, Straight
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.identify.fit._identification import Identification
     from shaftprint.identify.uncertainty._budget import Budget
 
-PERCENT = 100.0
 BAR_PX, FIELD_PX = 26, 30
 
 

@@ -8,11 +8,11 @@ import numpy as np
 from shaftprint.plain_table import Symbol
 from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Mark, Points, Straight
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.report.comparison._differences import Difference
 
-PERCENT = 100.0
 ROW_PX, FRAME_PX = 30, 20
 APART = 0.5
 

@@ -14,7 +14,7 @@ from shaftprint.plain_table import Symbol
 from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Band, Dash, Line, Mark, Points, Straight
 from shaftprint.report.figures._envelope import envelope
-from shaftprint.units import SECONDS_PER_HOUR, SECONDS_PER_MINUTE
+from shaftprint.units import PERCENT, SECONDS_PER_HOUR, SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
     from shaftprint.design.plan._plan import Plan
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from shaftprint.design.views._other_lengths import LengthCurve
     from shaftprint.design.views._planned_motion import PlannedMotion
 
-PERCENT = 100.0
 # Room of an axis beyond what it shows, as a share of it.
 _ROOM = 0.06
 # Samples of the set point of a whole test.

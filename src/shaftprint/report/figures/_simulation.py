@@ -12,9 +12,9 @@ from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Band, Line, Mark
 from shaftprint.report.charts._text import quantity
 from shaftprint.report.figures._envelope import STRETCHES, envelope
+from shaftprint.units import PERCENT
 
 COVERAGE = 0.95
-PERCENT = 100.0
 
 
 def simulation_chart(

@@ -11,6 +11,7 @@ from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Band, Line, Mark
 from shaftprint.report.charts._text import joined, over
 from shaftprint.report.figures._envelope import envelope
+from shaftprint.units import PERCENT
 from shaftprint.validation._run import low_pass
 from shaftprint.validation._settings import ValidationSettings
 
@@ -28,7 +29,6 @@ LEVEL_S = 5.0
 AHEAD_S = 0.5
 # A step that is not much higher than the smallest is one of those that count as smallest.
 HIGHER = 1.05
-PERCENT = 100.0
 
 
 def step_chart(

@@ -13,13 +13,12 @@ from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Band, Line, Mark, Points, Straight
 from shaftprint.report.charts._text import joined
 from shaftprint.report.figures._envelope import envelope, worthwhile
-from shaftprint.units import rpm_from_rev_s
+from shaftprint.units import PERCENT, rpm_from_rev_s
 
 if TYPE_CHECKING:
     from shaftprint.signals._working_points import WorkingPoint
     from shaftprint.validation._validation import ExcerptComparison, Validation
 
-PERCENT = 100.0
 BAND_POINTS = 200
 ROW_PX, FRAME_PX = 28, 20
 APART = 0.17

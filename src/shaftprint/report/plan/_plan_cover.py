@@ -6,11 +6,10 @@ from shaftprint.design.plan._plan import length_words
 from shaftprint.digits import plain
 from shaftprint.report.sections._cover import Card, Cover
 from shaftprint.tables._plan import swing_words, wish_table
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.design.planned_test._planned_test import PlannedTest
-
-PERCENT = 100.0
 
 
 def plan_cover(test: "PlannedTest") -> Cover:

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 # Normalised numbers move with the working point: beyond this share they differ for that reason alone.
 SAME_WORKING_POINT = 0.02
 MOST_NAMED = 4
-PERCENT = 100.0
 
 
 def comparison_cover(

@@ -20,12 +20,12 @@ from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import plain, rounded, with_deviation
 from shaftprint.plain_table import Table, numbers, texts
 from shaftprint.report.thesis._thesis_mode import GOVERNOR_FITS
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.identify.fit._identification import Identification
     from shaftprint.survey._thesis_mode import ThesisMode
 
-PERCENT = 100.0
 MILLISECONDS = 1000.0
 
 

@@ -17,6 +17,7 @@ from shaftprint.signals.excitation._found_test import FoundTest, common_shift_s
 from shaftprint.signals.excitation._found_tests import found_tests
 from shaftprint.signals.excitation._steps import step_window
 from shaftprint.signals.levels._leg_periods import leg_periods
+from shaftprint.units import PERCENT
 
 # Slow excitations only: a second of clock error must not look like another campaign.
 _SLOW_HZ = 0.2
@@ -30,7 +31,6 @@ _POWERS_OF_TEN = (1e-6, 1e-3, 1e-2, 1e-1, 10.0, 100.0, 1e3, 1e6)
 _OPPOSITE_DEG = 150.0
 # Clocks that are looked for, as a share of the time, and how alike the courses must then be.
 _WIDEST_CLOCK, _CLOCK_STEP, _SAME_COURSE = 0.02, 2.5e-4, 0.95
-_PERCENT = 100.0
 
 
 def measured_windows(campaign: Campaign) -> tuple[tuple[str, float, float], ...]:
@@ -198,7 +198,7 @@ def _clock_words(
     if max(alike) < _SAME_COURSE or abs(share) < _CLOCK_STEP:
         return ""
     return (
-        f"its tests follow it on a clock that runs {_PERCENT * abs(share):.2f} % "
+        f"its tests follow it on a clock that runs {PERCENT * abs(share):.2f} % "
         f"{'slow' if share > 0.0 else 'fast'}: check the sample rate that the file declares, the clock of the "
         "recording, or that of the generator"
     )

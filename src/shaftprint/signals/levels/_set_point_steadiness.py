@@ -29,6 +29,7 @@ from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.reasons import Reason
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals.levels._leg_periods import leg_periods
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
@@ -62,7 +63,6 @@ _SILENT = 0.1
 # Within so much of twice the best log-likelihood lies the time of a change in 95 of 100.
 _AS_GOOD = 3.84
 _ROUNDS = 8
-_PERCENT = 100.0
 
 Kind: TypeAlias = Literal["sine", "leg"]
 """What stretches are of."""
@@ -125,7 +125,7 @@ def expect_steady_set_point(
     if change is None:
         return ()
     first_s, last_s = change.between_s
-    percent = _PERCENT * change.size
+    percent = PERCENT * change.size
     return (
         Reason(
             kind="set-point shape",

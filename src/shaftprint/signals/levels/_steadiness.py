@@ -25,6 +25,7 @@ from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals.levels._fast_gain import FastGains, fast_gains
 from shaftprint.signals.levels._unseen_gain import unseen_gains
 from shaftprint.signals.levels._wander import window_covariance
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
@@ -50,7 +51,6 @@ _ROUNDS = 8
 _MEDIAN_OF_NORMAL, _LEAST_SCATTER = 0.6745, 0.8
 # A piece whose gain is known worse than this tells nothing of the scatter.
 _LARGEST_STD = 0.3
-_PERCENT = 100.0
 
 Kind: TypeAlias = Literal["step", "drift", "warm-up"]
 """Course of a change."""
@@ -366,7 +366,7 @@ def _best(courses: _Courses, by_load: _ByLoad, tried: _Tried, within_s: tuple[fl
 
 
 def _reason(change: Change, channel: str) -> Reason:
-    percent = _PERCENT * change.size
+    percent = PERCENT * change.size
     if not change.of_gain:
         how = f"jumps at about {change.time_s:.0f} s" if change.kind == "step" else "drifts"
         sentence = (

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from shaftprint.reasons import Reason
 from shaftprint.signals._channels import spots
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.recording._channel import Channel
@@ -27,7 +28,6 @@ _BESIDE, _TIMES = 10, 5.0
 _LEAST_SHARE = 0.01
 # What is lost once or twice, as a telemetry that holds its value, is no range.
 _FEWEST_PARTS, _PART_SAMPLES, _LEAST_VISITS = 3, 4096, 20
-_PERCENT = 100.0
 
 
 def expect_whole_crests(channel: "Channel") -> tuple[Reason, ...]:
@@ -49,7 +49,7 @@ def expect_whole_crests(channel: "Channel") -> tuple[Reason, ...]:
             where=channel.name,
             sentence=(
                 f"The torque is cut off: channel {channel.name} sticks at its {end}, {level:.4g} {channel.unit}, "
-                f"for {_PERCENT * share:.1f} % of the time; choose a larger range of amplifier, telemetry or logger."
+                f"for {PERCENT * share:.1f} % of the time; choose a larger range of amplifier, telemetry or logger."
             ),
         ),
     )

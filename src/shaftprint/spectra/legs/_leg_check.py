@@ -9,6 +9,7 @@ from shaftprint.reasons import Reason
 from shaftprint.spectra.legs._leg_lines import LegLines
 from shaftprint.spectra.lines._line_measurement import LineMeasurement
 from shaftprint.spectra.lines._set_point_check import amplitude_remark
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
@@ -22,7 +23,6 @@ _PERIOD_TOLERANCE, _PERIOD_LIMIT = 0.25, 0.5
 _CLOCK_TOLERANCE = 5e-4
 # Held steps and the resolution of a generator stay far below this share of the lines.
 _SHAPE_LIMIT = 0.03
-_PERCENT = 100.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,7 +70,7 @@ def leg_clock_reasons(measured: LegLines) -> tuple[Reason, ...]:
             where=measured.window.state.name,
             sentence=(
                 f"The clock of the recording is in doubt: the periods of {measured.window.state.name} are "
-                f"{_PERCENT * ratio:+.2f} % longer than the campaign file says; check the sample rate that the file "
+                f"{PERCENT * ratio:+.2f} % longer than the campaign file says; check the sample rate that the file "
                 "declares, or period_s of the campaign file."
             ),
         ),
@@ -96,7 +96,7 @@ def leg_shape_reasons(measured: LegLines) -> tuple[Reason, ...]:
             where=name,
             sentence=(
                 f"The set point of {name} is not the sum of lines that the campaign asks for: what lies beside them is "
-                f"{_PERCENT * share:.1f} % of it; check whether its channel is cut off at a highest or lowest value."
+                f"{PERCENT * share:.1f} % of it; check whether its channel is cut off at a highest or lowest value."
             ),
         ),
     )

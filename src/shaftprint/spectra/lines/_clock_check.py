@@ -13,6 +13,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.reasons import Reason
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.spectra.lines._line_fit import WindowSamples
@@ -35,7 +36,6 @@ _FAINT = 0.15
 _TELLS = 1.0 / 3.0
 _AGREE = 2.0 / 3.0
 _SAMPLES_A_PERIOD = 20.0
-_PERCENT = 100.0
 
 
 def clock_reasons(
@@ -117,7 +117,7 @@ def _recording(ratio: float) -> Reason:
     return Reason(
         kind="recording clock",
         sentence=(
-            f"The clock of the recording is in doubt: all sines of the set point run {_PERCENT * (ratio - 1.0):+.2f} % "
+            f"The clock of the recording is in doubt: all sines of the set point run {PERCENT * (ratio - 1.0):+.2f} % "
             "beside the frequencies of the campaign file; check the sample rate that the file declares, or all "
             "frequency_hz of the campaign file."
         ),
@@ -129,7 +129,7 @@ def _channel(name: str, share: float) -> Reason:
         kind="channel clock",
         where=name,
         sentence=(
-            f"The clock of {name} is in doubt: its sines run {_PERCENT * share:+.2f} % beside those of the set point; "
+            f"The clock of {name} is in doubt: its sines run {PERCENT * share:+.2f} % beside those of the set point; "
             "check the sample rate that the file declares for its channel."
         ),
     )

@@ -18,7 +18,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import f_tail
 from shaftprint.reasons import Reason
-from shaftprint.units import MILLI
+from shaftprint.units import MILLI, PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.signals._channel_signals import ExcitationSignal
@@ -36,7 +36,6 @@ _UNEXCITED_SHARE = 0.1
 _DEVIATIONS = 2.0
 # A share of another channel that changes no sine by more is none that a fit would see.
 _LEAST_SHARE = 0.003
-_PERCENT = 100.0
 # Generators and loggers keep a size to so much of it.
 _LEAST_STD = 2e-4
 
@@ -146,7 +145,7 @@ def band_reasons(band: InputBand | None, *, channel: str, symbol: str) -> tuple[
                 where=symbol,
                 sentence=(
                     f"Channel {channel} shows a share of another channel, {band.beside}: its sines differ from those "
-                    f"of the campaign, by up to {_PERCENT * band.beside_share:.2g} %, as that one answers them; look "
+                    f"of the campaign, by up to {PERCENT * band.beside_share:.2g} %, as that one answers them; look "
                     "for cross-talk between their cables or inputs, and log them apart."
                 ),
             ),

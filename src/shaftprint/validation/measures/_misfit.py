@@ -19,11 +19,11 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import chi_square_tail, deviations
 from shaftprint.identify.likelihood._fit_percent import fit_percent
+from shaftprint.units import PERCENT
 from shaftprint.validation.measures._noise_pieces import NoisePieces, quadratic_form
 from shaftprint.validation.measures._reach import EVERYWHERE, Reach
 
 Outcome = Literal["passes", "fails", "undecided"]
-PERCENT = 100.0
 # With fewer pieces of noise their scatter says little, and the autocovariance is asked as well.
 _FEWEST_PIECES = 12
 

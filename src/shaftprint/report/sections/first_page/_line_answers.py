@@ -9,12 +9,12 @@ from shaftprint.report.sections._cover import Card, State
 from shaftprint.report.sections.first_page._doubts import FAR, TOO_FAR, doubt_of, is_off
 from shaftprint.report.sections.first_page._number_table import shown
 from shaftprint.tables._fingerprint import expected_text, value_text
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.identify.fit._estimate import Estimate
 
-PERCENT = 100.0
 ANSWERED_ELSEWHERE = ("I_dn", "K_Q")
 """Physical values that have a question of their own."""
 SOURCES = {

@@ -9,6 +9,7 @@ from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.report.sections._cover import Card, State
 from shaftprint.report.sections.first_page._reason_words import words_of
+from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
@@ -20,7 +21,6 @@ COMMON_ZERO = 2.0
 LEFT_OUT = 0.25
 # Share of the numbers that must be known before all is fine.
 MOST = 2.0 / 3.0
-PERCENT = 100.0
 
 
 def usable(fingerprint: "Fingerprint") -> Card:
