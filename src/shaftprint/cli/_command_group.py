@@ -115,6 +115,19 @@ class LazyGroup(click.Group):
                 formatter.write_dl([(name.ljust(longest), line) for name, line in commands.items()])
 
 
+def actions_of(package: str, helps: Mapping[str, str]) -> type[LazyGroup]:
+    """Return the group of the actions of a command.
+
+    ``package``: the package that holds the file of each. ``helps``: the one-line help of each, in the order of use.
+    """
+
+    class ActionGroup(LazyGroup):
+        sections: ClassVar[Mapping[str, Mapping[str, str]]] = {"Actions": helps}
+        folder = package
+
+    return ActionGroup
+
+
 class CommandGroup(LazyGroup):
     """The commands by name, with one place that turns errors into a sentence and an exit code."""
 

@@ -1,7 +1,7 @@
 """What the tests of sister ships say, in sentences."""
 
 from shaftprint.drift._class_finding import ClassFinding, ShipStanding
-from shaftprint.drift._words import ALIKE, odds_text, open_sentences, size_text, ways_text
+from shaftprint.drift._words import alternatives, open_sentences, sized_text
 
 
 def sister_sentences(finding: ClassFinding) -> tuple[str, ...]:
@@ -22,9 +22,6 @@ def sister_sentences(finding: ClassFinding) -> tuple[str, ...]:
 
 
 def _of_ship(ship: ShipStanding) -> str:
-    alike = [one for one in ship.change.candidates if one.odds < ALIKE]
-    rest = ship.change.candidates[len(alike) :]
-    named = ", or ".join(f"{one.words}, by {size_text(one)}" for one in alike)
-    odds = f" Odds {odds_text(rest[0].odds)} against {rest[0].words}." if rest else ""
-    told = "" if len(alike) == 1 else f" Its tests hardly tell them apart: {ways_text(one.cause for one in alike)}."
-    return f"{ship.name} against its sisters: {named}.{odds}{told}"
+    return (
+        f"{ship.name} against its sisters: {alternatives(ship.change.candidates, sized_text, 'Its tests hardly tell')}"
+    )

@@ -1,9 +1,10 @@
 """What two tests say about a change of the ship, in sentences: what, by how much, and with which odds."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from typing import TypeVar
 
 from shaftprint.arguments import refusing_none
 from shaftprint.digits import p_value_text, plain_letters, stated
@@ -14,6 +15,8 @@ from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
 from shaftprint.errors import FingerprintError
 
+OneCause = TypeVar("OneCause", bound=SizedCause)
+"""A cause with or without its course."""
 # Causes whose likelihoods differ by less than this factor are named together.
 ALIKE = 3.0
 # Odds beyond this are said as such: the model itself is not known that well.
@@ -70,26 +73,31 @@ def size_text(one: SizedCause) -> str:
 
 
 def _of_change(change: ShipChange) -> str:
-    alike = [one for one in change.candidates if one.odds < ALIKE]
-    named = ", or ".join(f"{one.words}, by {size_text(one)}" for one in alike)
-    rest = change.candidates[len(alike) :]
+    return alternatives(change.candidates, sized_text, "This pair of tests hardly tells")
+
+
+def sized_text(one: SizedCause) -> str:
+    """Return what has happened and by how much."""
+    return f"{one.words}, by {size_text(one)}"
+
+
+def alternatives(causes: Sequence[OneCause], told: Callable[[OneCause], str], tests: str) -> str:
+    """Return causes that are about as likely as the first, the odds against the next, and what tells them apart.
+
+    ``causes``: causes, the most likely first. ``told``: returns what one of them would mean. ``tests``: which tests
+    hardly tell them apart, as the beginning of a sentence.
+    """
+    alike = [one for one in causes if one.odds < ALIKE]
+    rest = causes[len(alike) :]
     odds = f" Odds {odds_text(rest[0].odds)} against {rest[0].words}." if rest else ""
-    told = (
-        ""
-        if len(alike) == 1
-        else f" This pair of tests hardly tells them apart: {ways_text(one.cause for one in alike)}."
-    )
-    return f"{named}.{odds}{told}"
+    ways = "; ".join(dict.fromkeys(one.cause.told_by for one in alike))
+    apart = "" if len(alike) == 1 else f" {tests} them apart: {ways}."
+    return f"{', or '.join(map(told, alike))}.{odds}{apart}"
 
 
 def odds_text(odds: float) -> str:
     """Return odds against one; those that nobody can tell apart are said to be more than the largest."""
     return f"more than {MOST_ODDS:g} : 1" if odds > MOST_ODDS else f"{odds:.0f} : 1"
-
-
-def ways_text(causes: Iterable[Cause]) -> str:
-    """Return what would tell causes apart, each way once."""
-    return "; ".join(dict.fromkeys(cause.told_by for cause in causes))
 
 
 def _p(p_value: float) -> str:
@@ -130,8 +138,7 @@ def _of_noted(noted: NotedChange) -> str:
     what = f"{_DONE.get(event.kind, 'what was done')} on {event.at:%Y-%m-%d}"
     if not noted.changes:
         return f"After {what}, which was noted, nothing is other than before by more than chance."
-    named = ", and ".join(f"{one.words}, by {size_text(one)}" for one in noted.changes)
-    return f"Since {what}, as noted: {named}."
+    return f"Since {what}, as noted: {', and '.join(map(sized_text, noted.changes))}."
 
 
 def _to_do(finding: WatchFinding) -> str:
@@ -161,7 +168,7 @@ def _course_text(course: DatedCause, days: Sequence[str]) -> str:
 
     ``days``: when each test was made, in words.
     """
-    size = f"{course.words}, by {size_text(course)}"
+    size = sized_text(course)
     if course.shape == "ramp":
         return f"{size} a year since {days[course.since]}"
     return f"{size}, between {days[course.since - 1]} and {days[course.since]}"
@@ -188,12 +195,10 @@ def drift_sentence(drift: Drift, finding: WatchFinding, history: History) -> str
 
 
 def _of_drift(drift: Drift, days: Sequence[str], finding: WatchFinding) -> str:
-    alike = [one for one in drift.courses if one.odds < ALIKE]
-    rest = drift.courses[len(alike) :]
-    named = ", or ".join(f"{_course_text(one, days)}{_by_now_text(one, days, finding)}" for one in alike)
-    odds = f" Odds {odds_text(rest[0].odds)} against {rest[0].words}." if rest else ""
-    told = "" if len(alike) == 1 else f" These tests hardly tell them apart: {ways_text(one.cause for one in alike)}."
-    return f"{named}.{odds}{told}"
+    def told(one: DatedCause) -> str:
+        return f"{_course_text(one, days)}{_by_now_text(one, days, finding)}"
+
+    return alternatives(drift.courses, told, "These tests hardly tell")
 
 
 # Later than that nobody plans.

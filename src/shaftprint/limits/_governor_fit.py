@@ -14,7 +14,7 @@ from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.likelihood._weighting import MaximumLikelihood
 from shaftprint.identify.search._levenberg_marquardt import descend
 from shaftprint.identify.search._settings import Settings
-from shaftprint.identify.search._starts import Draw
+from shaftprint.identify.search._starts import GivenStarts
 from shaftprint.limits._candidates import IDLE, Kind, parameters_of
 from shaftprint.limits.prediction._carried import CarriedError
 from shaftprint.limits.prediction._held_set_point import Messages
@@ -38,18 +38,6 @@ GOVERNOR: Mapping[str, float] = {
 NEGLIGIBLE_FALL = 0.02
 # Iterations of the last steps of a fit that is reported.
 LAST = 2
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class SingleStart(Draw):
-    """A single start."""
-
-    values: FloatArray
-    """Free parameters, shape (free,)."""
-
-    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
-        """Return it within the bounds."""
-        return np.tile(np.clip(self.values, lower, upper), (count, 1))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -148,7 +136,7 @@ def fitted(
 
 def identified(fit: Fitted) -> tuple[Fitted, Identification]:
     """Return a governor to the last digit, and the fit with its covariance."""
-    draw = SingleStart(np.array([fit.values[p.name] for p in fit.term.structure.free]))
+    draw = GivenStarts(np.array([[fit.values[p.name] for p in fit.term.structure.free]]))
     settings = Settings(priors=fit.priors, starts=1, draw=draw, max_iterations=LAST, stability="ignored")
     identification = identify_jointly([fit.term], rng=np.random.default_rng(0), settings=settings)
     return _at(fit, {estimate.name: estimate.value for estimate in identification.parameters}), identification

@@ -1,11 +1,8 @@
 """``shaftprint fleet``: many recordings to fingerprints in a store, one file an action."""
 
-from collections.abc import Mapping
-from typing import ClassVar
-
 import click
 
-from shaftprint.cli._command_group import LazyGroup
+from shaftprint.cli._command_group import actions_of
 
 # The one-line help of every action: a list of them imports none of their files.
 ACTIONS = {
@@ -16,14 +13,7 @@ ACTIONS = {
 }
 
 
-class ActionGroup(LazyGroup):
-    """The actions by name."""
-
-    sections: ClassVar[Mapping[str, Mapping[str, str]]] = {"Actions": ACTIONS}
-    folder = "shaftprint.cli.commands.fleet"
-
-
-@click.group("fleet", cls=ActionGroup, subcommand_metavar="ACTION [ARGS]...")
+@click.group("fleet", cls=actions_of("shaftprint.cli.commands.fleet", ACTIONS), subcommand_metavar="ACTION [ARGS]...")
 def command() -> None:
     """Identify many recordings, and keep their fingerprints in a store.
 

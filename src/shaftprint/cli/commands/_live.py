@@ -1,11 +1,8 @@
 """``shaftprint live``: a test that the program plays, watches, judges and stops, one file an action."""
 
-from collections.abc import Mapping
-from typing import ClassVar
-
 import click
 
-from shaftprint.cli._command_group import LazyGroup
+from shaftprint.cli._command_group import actions_of
 
 # The one-line help of every action: a list of them imports none of their files.
 ACTIONS = {
@@ -17,14 +14,7 @@ ACTIONS = {
 }
 
 
-class ActionGroup(LazyGroup):
-    """The actions by name."""
-
-    sections: ClassVar[Mapping[str, Mapping[str, str]]] = {"Actions": ACTIONS}
-    folder = "shaftprint.cli.commands.live"
-
-
-@click.group("live", cls=ActionGroup, subcommand_metavar="ACTION [ARGS]...")
+@click.group("live", cls=actions_of("shaftprint.cli.commands.live", ACTIONS), subcommand_metavar="ACTION [ARGS]...")
 def command() -> None:
     """Play a test through a device on board, the counterpart; watch it, judge it and stop it.
 

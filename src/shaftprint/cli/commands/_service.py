@@ -1,11 +1,8 @@
 """``shaftprint service``: a fingerprint from ordinary service, one file an action."""
 
-from collections.abc import Mapping
-from typing import ClassVar
-
 import click
 
-from shaftprint.cli._command_group import LazyGroup
+from shaftprint.cli._command_group import actions_of
 
 # The one-line help of every action: a list of them imports none of their files.
 ACTIONS = {
@@ -15,14 +12,9 @@ ACTIONS = {
 }
 
 
-class ActionGroup(LazyGroup):
-    """The actions by name."""
-
-    sections: ClassVar[Mapping[str, Mapping[str, str]]] = {"Actions": ACTIONS}
-    folder = "shaftprint.cli.commands.service"
-
-
-@click.group("service", cls=ActionGroup, subcommand_metavar="ACTION [ARGS]...")
+@click.group(
+    "service", cls=actions_of("shaftprint.cli.commands.service", ACTIONS), subcommand_metavar="ACTION [ARGS]..."
+)
 def command() -> None:
     """Identify a line from the logs of its ordinary service, without a test.
 

@@ -1,11 +1,8 @@
 """``shaftprint store``: fingerprints of many ships over years, one file an action."""
 
-from collections.abc import Mapping
-from typing import ClassVar
-
 import click
 
-from shaftprint.cli._command_group import LazyGroup
+from shaftprint.cli._command_group import actions_of
 
 # The one-line help of every action: a list of them imports none of their files.
 ACTIONS = {
@@ -21,14 +18,7 @@ ACTIONS = {
 }
 
 
-class ActionGroup(LazyGroup):
-    """The actions by name."""
-
-    sections: ClassVar[Mapping[str, Mapping[str, str]]] = {"Actions": ACTIONS}
-    folder = "shaftprint.cli.commands.store"
-
-
-@click.group("store", cls=ActionGroup, subcommand_metavar="ACTION [ARGS]...")
+@click.group("store", cls=actions_of("shaftprint.cli.commands.store", ACTIONS), subcommand_metavar="ACTION [ARGS]...")
 def command() -> None:
     """Keep the fingerprints of many ships, with their history.
 

@@ -105,7 +105,7 @@ def descend(
     last = not checked
     for iteration in range(1, max_iterations + 1):
         step, settled = _bounded_step(at, lower, upper)
-        predicted = -np.vecdot(step, at.gradient + 0.5 * _times(at.hessian, step))
+        predicted = -np.vecdot(step, at.gradient + 0.5 * times(at.hessian, step))
         # A step cut short, by a refusal or by bounds that found no peace, promises little without an optimum near.
         trusted = ((at.growth == FIRST_GROWTH) & settled) | (at.damping > LARGEST_DAMPING)
         small = max(tolerance, ROUNDING) * at.cost
@@ -161,14 +161,14 @@ class _Position:
     @classmethod
     def at_start(cls, theta: FloatArray, r: FloatArray, jacobian: FloatArray) -> "_Position":
         """Return the position of every start before its first step."""
-        cost, gradient, hessian = _quadratic(r, jacobian)
+        cost, gradient, hessian = quadratic(r, jacobian)
         return cls(
             starts=np.arange(cost.size),
             theta=theta.copy(),
             cost=cost,
             gradient=gradient,
             hessian=hessian,
-            scale=np.maximum(_diagonal(hessian), SMALLEST_SCALE),
+            scale=np.maximum(diagonals(hessian), SMALLEST_SCALE),
             damping=np.full(cost.size, FIRST_DAMPING),
             growth=np.full(cost.size, FIRST_GROWTH),
             stretch=np.ones(cost.size),
@@ -178,8 +178,8 @@ class _Position:
 
     def renew(self, r: FloatArray, jacobian: FloatArray) -> None:
         """Take derivatives that were found anew; a step that failed says nothing against them."""
-        _, self.gradient, self.hessian = _quadratic(r, jacobian)
-        self.scale = np.maximum(self.scale, _diagonal(self.hessian))
+        _, self.gradient, self.hessian = quadratic(r, jacobian)
+        self.scale = np.maximum(self.scale, diagonals(self.hessian))
         self.growth, self.doubted = np.full_like(self.growth, FIRST_GROWTH), np.zeros_like(self.doubted)
 
     def chosen(self, rows: BoolArray) -> "_Position":
@@ -193,7 +193,7 @@ class _Position:
 
         Returns whether there were any.
         """
-        cost, gradient, hessian = _quadratic(r, jacobian)
+        cost, gradient, hessian = quadratic(r, jacobian)
         good = (cost < self.cost) & (predicted > 0.0)
         if allowed is not None:
             lower = good.copy()
@@ -217,22 +217,22 @@ class _Position:
             self.theta, self.cost = np.where(row, trial, self.theta), np.where(good, cost, self.cost)
             self.gradient = np.where(row, gradient, self.gradient)
             self.hessian = np.where(row[:, :, None], hessian, self.hessian)
-        self.scale = np.maximum(self.scale, _diagonal(self.hessian))
+        self.scale = np.maximum(self.scale, diagonals(self.hessian))
         return bool(good.any())
 
 
-def _quadratic(residuals: FloatArray, jacobian: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def quadratic(residuals: FloatArray, jacobian: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return cost, gradient and Gauss-Newton matrix of every row."""
     hessian = jacobian @ jacobian.swapaxes(1, 2)
-    return 0.5 * np.vecdot(residuals, residuals), _times(jacobian, residuals), hessian
+    return 0.5 * np.vecdot(residuals, residuals), times(jacobian, residuals), hessian
 
 
-def _times(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+def times(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     """Return the product of every row's matrix and vector."""
     return np.asarray((matrix @ vector[:, :, None])[:, :, 0])
 
 
-def _diagonal(matrix: FloatArray) -> FloatArray:
+def diagonals(matrix: FloatArray) -> FloatArray:
     """Return a view of the diagonal of every row's matrix."""
     rows, size, _ = matrix.shape
     return matrix.reshape(rows, -1)[:, :: size + 1]
@@ -249,7 +249,7 @@ def _bounded_step(at: _Position, lower: FloatArray, upper: FloatArray) -> tuple[
     to_lower, to_upper = (lower - at.theta) / unit, (upper - at.theta) / unit
     gradient = at.gradient * unit
     damped = at.hessian.copy()
-    _diagonal(damped)[...] += at.damping[:, None] * at.scale
+    diagonals(damped)[...] += at.damping[:, None] * at.scale
     damped *= unit[:, :, None] * unit[:, None, :]
     low, high = to_lower >= 0.0, to_upper <= 0.0
     if low.any() or high.any():
@@ -273,7 +273,7 @@ def _held_step(
     change = below | above
     back_up, back_down = low, high
     if low.any() or high.any():
-        slope = gradient + _times(damped, step)
+        slope = gradient + times(damped, step)
         back_up, back_down = low & (slope < 0.0), high & (slope > 0.0)
         change |= back_up | back_down
     settled: BoolArray = np.logical_not(change.any(axis=1))
@@ -310,7 +310,7 @@ def _step_beside(
     if not held.any():
         return np.asarray(np.linalg.solve(damped, -gradient[:, :, None])[:, :, 0])
     put = np.where(low, to_lower, np.where(high, to_upper, 0.0))
-    right = np.where(held, put, -gradient - _times(damped, put))
+    right = np.where(held, put, -gradient - times(damped, put))
     system = np.where(held[:, :, None] | held[:, None, :], 0.0, damped)
-    _diagonal(system)[held] = 1.0
+    diagonals(system)[held] = 1.0
     return np.asarray(np.linalg.solve(system, right[:, :, None])[:, :, 0])

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
-from shaftprint.identify.likelihood._objective import Objective
+from shaftprint.identify.search._levenberg_marquardt import SMALLEST_SCALE, TINY, diagonals, quadratic, times
 from shaftprint.identify.uncertainty._numbers import Numbers
 
 ROUNDS = 200
@@ -43,9 +43,6 @@ NEAR = 0.8
 TRUSTED_DAMPING = 1e-5
 # A step that was good leaves this share of the damping.
 RELIEF = 0.1
-# Curvature of a parameter without influence: the system stays solvable.
-SMALLEST_SCALE = 1e-100
-TINY = 1e-300
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -76,7 +73,7 @@ def furthest(
     standard deviations of a normal estimate, shape (rows,). ``optima``: free parameters of other optima of the search,
     shape (optima, free); those that cost too much are passed over.
     """
-    lowest = float(_parabola(numbers.objective, start[None, :])[0][0])
+    lowest = float(quadratic(*numbers.objective.residuals(start[None, :]))[0][0])
     climb = _Climb(numbers=numbers, start=start, side=side, distance=distance, limit=lowest + 0.5 * distance**2)
     every = np.arange(side.size)
     first = climb.ends_from(every, start)
@@ -154,7 +151,7 @@ class _Climb:
 
     def allowing(self, theta: FloatArray) -> IntArray:
         """Return the rows whose rise of the cost allows a parameter set."""
-        return np.flatnonzero(_parabola(self.numbers.objective, theta[None, :])[0][0] < self.limit)
+        return np.flatnonzero(quadratic(*self.numbers.objective.residuals(theta[None, :]))[0][0] < self.limit)
 
     def further_starts(self, ends: Ends) -> tuple[IntArray, FloatArray]:
         """Return the rows whose number lies further at the end of another row, and the parameters there."""
@@ -238,7 +235,7 @@ class _Position:
         numbers, side = climb.numbers.chosen(rows), climb.side[rows]
         sets = np.atleast_2d(theta)
         one_each = (np.zeros_like(rows) if sets.shape[0] == 1 else np.arange(rows.size),)
-        cost, gradient, hessian = (part[one_each] for part in _parabola(numbers.objective, sets))
+        cost, gradient, hessian = (part[one_each] for part in quadratic(*numbers.objective.residuals(sets)))
         theta = sets[one_each]
         estimate = np.broadcast_to(climb.start, theta.shape)
         return cls(
@@ -252,7 +249,7 @@ class _Position:
             gradient=gradient,
             hessian=hessian,
             value=side * numbers.values(theta),
-            slope=side[:, None] * numbers.slopes(theta, _diagonal(hessian)),
+            slope=side[:, None] * numbers.slopes(theta, diagonals(hessian)),
             damping=np.full(rows.size, LEAST_DAMPING),
             growth=np.ones(rows.size),
         )
@@ -269,10 +266,10 @@ class _Position:
     def advance(self, numbers: Numbers, trial: FloatArray, step: _Step) -> None:
         """Go to the trials that lie further or nearer to the contour; damp the other rows."""
         numbers_of_rows = numbers.chosen(self.rows)
-        cost, gradient, hessian = _parabola(numbers.objective, trial)
+        cost, gradient, hessian = quadratic(*numbers.objective.residuals(trial))
         value = self.side * numbers_of_rows.values(trial)
         excess = np.maximum(cost, self.limit) - np.maximum(self.cost, self.limit)
-        slope = self.side[:, None] * numbers_of_rows.slopes(trial, _diagonal(hessian))
+        slope = self.side[:, None] * numbers_of_rows.slopes(trial, diagonals(hessian))
         finite = np.isfinite(value) & np.isfinite(slope).all(axis=1)
         moved = np.where(finite, value, self.value) - self.value
         # Where the parabola never comes down to the contour, or bounds leave the number no way, the cost decides; a
@@ -290,19 +287,6 @@ class _Position:
         self.theta, self.gradient = np.where(row, trial, self.theta), np.where(row, gradient, self.gradient)
         self.slope, self.hessian = np.where(row, slope, self.slope), np.where(row[:, :, None], hessian, self.hessian)
         self.cost, self.value = np.where(good, cost, self.cost), np.where(good, value, self.value)
-
-
-def _parabola(objective: Objective, theta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return cost, gradient and Gauss-Newton matrix of every row."""
-    r, jacobian = objective.residuals(theta)
-    gradient = (jacobian @ r[:, :, None])[:, :, 0]
-    return 0.5 * np.vecdot(r, r), gradient, jacobian @ jacobian.swapaxes(1, 2)
-
-
-def _diagonal(matrix: FloatArray) -> FloatArray:
-    """Return a view of the diagonal of every row's matrix."""
-    rows, size, _ = matrix.shape
-    return matrix.reshape(rows, -1)[:, :: size + 1]
 
 
 def _short_of(at: _Position, lower: FloatArray, upper: FloatArray) -> tuple[BoolArray, BoolArray, FloatArray]:
@@ -329,14 +313,14 @@ def _model_step(at: _Position, lower: FloatArray, upper: FloatArray) -> _Step:
     """Return the step to the furthest point of the parabola's contour that is inside the box."""
     to_lower, to_upper = lower - at.theta, upper - at.theta
     damped = at.hessian.copy()
-    diagonal = _diagonal(damped)
+    diagonal = diagonals(damped)
     diagonal += at.damping[:, None] * np.maximum(diagonal, SMALLEST_SCALE)
     low = (to_lower >= 0.0) & (at.slope < 0.0)
     high = (to_upper <= 0.0) & (at.slope > 0.0)
     for turn in range(BOUND_PASSES):
         step = _step_beside(at, damped, low, high, to_lower, to_upper)
         below, above = step.delta < to_lower, step.delta > to_upper
-        tilt = at.gradient + (damped @ step.delta[:, :, None])[:, :, 0] - step.pull[:, None] * at.slope
+        tilt = at.gradient + times(damped, step.delta) - step.pull[:, None] * at.slope
         # No rise of the cost buys a row more that is stuck: its parameters stay where the number wants them.
         tilt = np.where(step.stuck[:, None] & (at.slope != 0.0), -at.slope, tilt)
         back_up, back_down = low & (tilt < 0.0), high & (tilt > 0.0)
@@ -366,13 +350,13 @@ def _step_beside(
     free_gradient = gradient
     if held.any():
         put = np.where(low, to_lower, np.where(high, to_upper, 0.0))
-        moved = (damped @ put[:, :, None])[:, :, 0]
+        moved = times(damped, put)
         base = base + np.vecdot(gradient, put) + 0.5 * np.vecdot(put, moved)
         slope = np.where(held, 0.0, slope)
         free_gradient = np.where(held, 0.0, gradient + moved)
         gradient = np.where(held, -put, free_gradient)
         system = np.where(held[:, :, None] | held[:, None, :], 0.0, damped)
-        _diagonal(system)[held] = 1.0
+        diagonals(system)[held] = 1.0
     solution = np.linalg.solve(system, np.concatenate([slope[:, :, None], gradient[:, :, None]], axis=2))
     along, down = solution[:, :, 0], solution[:, :, 1]
     reach = np.vecdot(slope, along)
