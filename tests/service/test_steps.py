@@ -15,13 +15,13 @@ HERE = {
 @pytest.mark.parametrize("share", [0.1, 0.5, 3.0])
 def test_a_step_goes_its_way_but_no_farther_than_a_quarter_of_a_gain_or_lag(monkeypatch, share):
     """From usual values to a ship of its own a whole step halved the lag, and the next met a line that hunts."""
-    monkeypatch.setattr(_fit, "simulated", lambda records, model, theta, simulator: [])
+    monkeypatch.setattr(_fit, "simulated", lambda records, model, theta: [])
     monkeypatch.setattr(_fit, "scores", lambda runs, whitening: [])
     monkeypatch.setattr(_fit, "_misfit", lambda each, sums, model, theta: 0.0)
     theta = np.array([HERE[name] for name in FREE])
     asked = 0.01 * theta
     asked[FREE.index("omega_n")] *= -100.0 * share
-    tried, _, _ = _fit._stepped([], [], None, asked, None, theta, None, None, guided=False)
+    tried, _, _ = _fit._stepped([], [], None, asked, None, theta, None, guided=False)
     assert (tried - theta) / asked == pytest.approx(min(1.0, 0.25 / share))
 
 

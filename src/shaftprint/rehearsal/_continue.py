@@ -19,9 +19,7 @@ if TYPE_CHECKING:
     from shaftprint.survey._measurement import Measurement
 
 
-def standing_after(
-    test: "PlannedTest", measurement: "Measurement", trial: Trial, *, seed: int = 1, now: datetime | None = None
-) -> Standing:
+def standing_after(test: "PlannedTest", measurement: "Measurement", trial: Trial, *, seed: int = 1) -> Standing:
     """Return how far a planned test has come with a recording of it.
 
     Parameters
@@ -34,8 +32,6 @@ def standing_after(
         The vessel, and the campaign that was sailed.
     seed
         Of the starts of the search.
-    now
-        When it is done, with time zone.
 
     Raises
     ------
@@ -72,4 +68,4 @@ def standing_after(
         else identify_jointly(every, rng=rng, settings=how)
     )
     recorded = {state.name: state.periods for state in measurement.signals.legs}
-    return standing_of(test, fit, sailed, recorded, now=now or datetime.now(UTC).replace(microsecond=0), seed=seed)
+    return standing_of(test, fit, sailed, recorded, now=datetime.now(UTC).replace(microsecond=0), seed=seed)

@@ -34,15 +34,12 @@ def render_class(
     finding: "ClassFinding",
     *,
     now: "datetime",
-    pictures: bool = False,
-    overwrite: bool = False,
 ) -> Path:
     """Write a page on a class of ships, ``index.html`` with its figure; return its path.
 
     ``directory``: where the page goes; made if it does not exist. ``class_name``: what the ships have in common.
     ``ships``, ``finding``: the ships, and what ``judge_sisters`` has found. ``now``: time of making, with time zone.
-    ``pictures``: whether the chart is written as SVG, PDF and PNG too. ``overwrite``: whether an earlier page there may
-    be replaced. Raises FileExistsError if there is a page already and ``overwrite`` is false.
+    Raises FileExistsError if there is a page already.
     """
     state: State = "look" if finding.odd else "open" if finding.because else "fine"
     tests = [test for ship in ships for test in ship.tests]
@@ -67,7 +64,7 @@ def render_class(
         files=source_table({f"{ship.name}, {test.name}": test.fingerprint for ship in ships for test in ship.tests}),
         ending="± is one standard deviation throughout; intervals hold 95 %.",
     )
-    return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=None)
+    return write_page(directory, page)
 
 
 def _sections(finding: "ClassFinding") -> list[Section]:

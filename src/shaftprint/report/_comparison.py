@@ -39,18 +39,15 @@ def render_comparison(
     structures: "Mapping[str, Structure] | None" = None,
     load_repeatability: float = LOAD_REPEATABILITY,
     remarks: Sequence[str] = (),
-    pictures: bool = False,
-    overwrite: bool = False,
 ) -> Path:
     """Write a report on two or more fingerprints, ``index.html`` with its figures; return the path of the page.
 
     ``directory``: where the report goes; made if it does not exist. Other files there are left alone. ``fingerprints``:
     fingerprints by the name that the report gives them; the first is the one that others are compared with.
     ``structures``: structures of one's own by name; those that are shipped are known. ``load_repeatability``: as in
-    ``differences``. ``remarks``: what else the tests say of the lines beside each other, in sentences. ``pictures``:
-    whether every chart is written as SVG, PDF and PNG too, into the folder ``figures``. ``overwrite``: whether an
-    earlier report there may be replaced. Raises FileExistsError if there is a report already and ``overwrite`` is
-    false; ReportError if there are fewer than two fingerprints, or plotly is not installed.
+    ``differences``. ``remarks``: what else the tests say of the lines beside each other, in sentences. Raises
+    FileExistsError if there is a report already; ReportError if there are fewer than two fingerprints, or plotly is not
+    installed.
     """
     if len(fingerprints) < FEWEST:
         raise ReportError(
@@ -73,7 +70,7 @@ def render_comparison(
         files=source_table(fingerprints),
         ending="± is one standard deviation throughout; bands, intervals and error bars hold 95 %.",
     )
-    return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=None)
+    return write_page(directory, page)
 
 
 def _cause_sections(findings: Mapping[str, Finding]) -> list[Section]:

@@ -34,16 +34,14 @@ def render_drive(
     fingerprint: DriveFingerprint,
     *,
     pictures: bool = False,
-    overwrite: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> Path:
     """Write the page of a drive, ``index.html`` with its charts; return its path.
 
     ``directory``: where the page goes; made if it does not exist. Other files there are left alone. ``fit``: what was
     found, with the records. ``fingerprint``: what is kept of it. ``pictures``: whether every chart is written as SVG,
-    PDF and PNG too. ``overwrite``: whether an earlier page there may be replaced. ``progress``: is told the finished
-    share, from 0 to 1. Raises FileExistsError if there is a page already and ``overwrite`` is false; ReportError if
-    plotly is not installed.
+    PDF and PNG too. ``progress``: is told the finished share, from 0 to 1. Raises FileExistsError if there is a page
+    already; ReportError if plotly is not installed.
     """
     page = Page(
         title=f"Fingerprint of {fingerprint.drive}",
@@ -64,7 +62,7 @@ def render_drive(
         ),
         fingerprint_sha256=fingerprint_sha256(fingerprint),
     )
-    return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=progress)
+    return write_page(directory, page, pictures=pictures, progress=progress)
 
 
 def _counted(fingerprint: DriveFingerprint) -> str:

@@ -45,16 +45,12 @@ def render_history(
     *,
     now: "datetime",
     load_repeatability: float,
-    pictures: bool = False,
-    overwrite: bool = False,
 ) -> Path:
     """Write a page on the history of a line, ``index.html`` with its figure; return its path.
 
     ``directory``: where the page goes; made if it does not exist. ``title``: what the line is called. ``history``,
     ``finding``: the tests, and what ``watch`` has found in them. ``now``: time of making, with time zone.
-    ``load_repeatability``: as in ``watch``. ``pictures``: whether the chart is written as SVG, PDF and PNG too.
-    ``overwrite``: whether an earlier page there may be replaced. Raises FileExistsError if there is a page already and
-    ``overwrite`` is false.
+    ``load_repeatability``: as in ``watch``. Raises FileExistsError if there is a page already.
     """
     sizes = sizes_of_tests(history, load_repeatability=load_repeatability)
     noun = history.tests[0].fingerprint.noun if history.tests else "ship"
@@ -75,7 +71,7 @@ def render_history(
         files=source_table({test.name: test.fingerprint for test in history.tests}),
         ending="± is one standard deviation throughout; intervals hold 95 %.",
     )
-    return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=None)
+    return write_page(directory, page)
 
 
 def _cards(finding: "WatchFinding", history: "History", state: State, *, noun: str) -> list[Card]:

@@ -66,9 +66,9 @@ def write_page(
     directory: str | Path,
     page: Page,
     *,
-    pictures: bool,
-    overwrite: bool,
-    progress: Callable[[float], None] | None,
+    pictures: bool = False,
+    overwrite: bool = False,
+    progress: Callable[[float], None] | None = None,
     further: Mapping[str, Page] = MappingProxyType({}),
     pdf: bool = False,
 ) -> Path:

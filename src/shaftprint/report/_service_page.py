@@ -31,14 +31,11 @@ _ROW_PX, _LEAST_PX = 18, 160
 _MOST_REASONS = 4
 
 
-def render_service(
-    directory: str | Path, found: "Scan", *, vessel: str, now: "datetime", overwrite: bool = False
-) -> Path:
+def render_service(directory: str | Path, found: "Scan", *, vessel: str, now: "datetime") -> Path:
     """Write a page on a scan, ``index.html`` with its strip; return its path.
 
     ``directory``: where the page goes; made if it does not exist. ``found``: what the scan saw. ``vessel``: name of the
-    ship. ``now``: time of making, with time zone. ``overwrite``: whether an earlier page there may be replaced. Raises
-    FileExistsError if there is a page already and ``overwrite`` is false.
+    ship. ``now``: time of making, with time zone. Raises FileExistsError if there is a page already.
     """
     state: State = "bad" if found.refused else "fine" if found.used else "open"
     page = Page(
@@ -62,7 +59,7 @@ def render_service(
         ),
         ending="To take a segment out write no into the column used of its line in the table of segments.",
     )
-    return write_page(directory, page, pictures=False, overwrite=overwrite, progress=None)
+    return write_page(directory, page)
 
 
 def _sections(found: "Scan") -> list[Section]:

@@ -26,7 +26,6 @@ from shaftprint.service._model import FREE, ServiceModel
 from shaftprint.service._progress import Progress, Reached
 from shaftprint.service._score import Score, Simulated, noise_of, scores, simulated
 from shaftprint.time_domain._record import Record
-from shaftprint.time_domain._simulator import Simulator
 from shaftprint.time_domain._whitening import Whitening
 
 FEWEST_SEGMENTS = 16
@@ -172,12 +171,11 @@ def fit_segments(
     records: Sequence[Record],
     model: ServiceModel,
     *,
-    simulator: Simulator | None = None,
     progress: Progress | None = None,
 ) -> ServiceFit:
     """Return the parameters that explain segments best.
 
-    ``records``: the segments. ``model``: the model, with the values to begin from. ``simulator``: how it is simulated.
+    ``records``: the segments. ``model``: the model, with the values to begin from.
     ``progress``: keeps what each step has reached, and says where an earlier run was. Raises ServiceError if there are
     too few segments, or the steps do not end.
     """
@@ -187,7 +185,7 @@ def fit_segments(
             "give more logs."
         )
     counts = np.ones(len(records), dtype=np.bool_)
-    runs = _beside_limits(simulated(records, model, model.theta, simulator), counts)
+    runs = _beside_limits(simulated(records, model, model.theta), counts)
     whitening = noise_of(runs)
     each = scores(runs, whitening)
     at_start, counts_at_start = tuple(each), frozen_bool(counts)
@@ -197,7 +195,7 @@ def fit_segments(
         theta, number, size, is_last = reached.theta, reached.steps, reached.size, reached.is_last
         counts, whitening = reached.counts.copy(), Whitening(noise=reached.noise)
         kept = [record for record, does in zip(records, counts, strict=True) if does]
-        runs = simulated(kept, model, theta, simulator)
+        runs = simulated(kept, model, theta)
         each = scores(runs, whitening)
     while not is_last:
         if number == _MOST_STEPS:
@@ -213,7 +211,7 @@ def fit_segments(
         size = float(np.sqrt(step @ sums.information @ step))
         # from afar the filter still holds what the start leaves, and its misfit is no guide
         is_rough = number <= _MOST_NOISES or size < _SHORT
-        found = _stepped(runs, each, sums, step, model, theta, whitening, simulator, guided=not is_rough)
+        found = _stepped(runs, each, sums, step, model, theta, whitening, guided=not is_rough)
         if found is None:
             if size < _ROUGH:
                 break
@@ -227,7 +225,7 @@ def fit_segments(
             each = scores(runs, whitening)
         is_last = size < _LAST or max(size, before) < _SHORT
         if not is_last and size > _NOISE_ANEW and number <= _MOST_NOISES:
-            runs = _with_those_back(runs, records, counts, model, theta, simulator)
+            runs = _with_those_back(runs, records, counts, model, theta)
             whitening = noise_of(runs)
             each = scores(runs, whitening)
         if progress is not None:
@@ -263,7 +261,6 @@ def _stepped(
     model: ServiceModel,
     theta: FloatArray,
     whitening: Whitening,
-    simulator: Simulator | None,
     *,
     guided: bool,
 ) -> tuple[FloatArray, list[Simulated], list[Score]] | None:
@@ -274,7 +271,7 @@ def _stepped(
     for _ in range(_HALVINGS):
         tried = _within(theta + step)
         try:
-            new_runs = simulated([one.record for one in runs], model, tried, simulator)
+            new_runs = simulated([one.record for one in runs], model, tried)
         except ServiceError:
             step = 0.5 * step
             continue
@@ -309,13 +306,12 @@ def _with_those_back(
     counts: BoolArray,
     model: ServiceModel,
     theta: FloatArray,
-    simulator: Simulator | None,
 ) -> list[Simulated]:
     """Return segments with those again that met a limit before a long step, and meet none now."""
     out = np.flatnonzero(~counts).tolist()
     if not out:
         return list(runs)
-    back = simulated([records[k] for k in out], model, theta, simulator)
+    back = simulated([records[k] for k in out], model, theta)
     every = dict(zip(np.flatnonzero(counts).tolist(), runs, strict=True)) | dict(zip(out, back, strict=True))
     counts[:] = True
     return _beside_limits([every[k] for k in sorted(every)], counts)

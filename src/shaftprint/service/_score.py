@@ -18,7 +18,7 @@ from shaftprint.service._model import BESIDE, FREE, ServiceModel
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise
 from shaftprint.time_domain._nuisance import drift_columns, orthonormal, without
 from shaftprint.time_domain._record import Record
-from shaftprint.time_domain._simulator import ExactDelays, Simulator, on_record
+from shaftprint.time_domain._simulator import ExactDelays, on_record
 from shaftprint.time_domain._whitening import Whitening
 
 MEMORY_S = 2.0
@@ -61,17 +61,15 @@ class Score:
     """Whether a limit of the torque acted in the model."""
 
 
-def simulated(
-    records: Sequence[Record], model: ServiceModel, theta: FloatArray, simulator: Simulator | None = None
-) -> list[Simulated]:
+def simulated(records: Sequence[Record], model: ServiceModel, theta: FloatArray) -> list[Simulated]:
     """Return segments beside their simulation at some parameters.
 
-    ``records``: the segments. ``theta``: its free parameters, shape (free,). ``simulator``: how it is simulated. Raises
+    ``records``: the segments. ``theta``: its free parameters, shape (free,). Raises
     ServiceError if a simulation runs away.
     """
     runs = []
     for record in records:
-        run = _simulated(record, model, theta, simulator or ExactDelays())
+        run = _simulated(record, model, theta)
         if run is None:
             raise ServiceError(
                 f"{record.name}: the simulation of {model.structure.name} runs away at "
@@ -82,9 +80,9 @@ def simulated(
     return runs
 
 
-def _simulated(record: Record, model: ServiceModel, theta: FloatArray, simulator: Simulator) -> Simulated | None:
+def _simulated(record: Record, model: ServiceModel, theta: FloatArray) -> Simulated | None:
     structure = model.structure
-    run = on_record(simulator, structure, model.vector(theta, record.load), record, (*FREE, *BESIDE))
+    run = on_record(ExactDelays(), structure, model.vector(theta, record.load), record, (*FREE, *BESIDE))
     if run is None:
         return None
     names = tuple(structure.outputs)

@@ -19,11 +19,11 @@ _LOOKED_HZ = 200.0
 
 
 @refusing_none(SignalError)
-def describe_set_point(recording: "Recording", vessel: "Vessel", *, name: str | None = None) -> Description:
+def describe_set_point(recording: "Recording", vessel: "Vessel") -> Description:
     """Return the campaign that the recorded set point shows, and what of it no campaign file can describe.
 
     ``recording``: the raw recording, open. ``vessel``: says which channel is the set point, and what it is in volts of
-    the campaign. ``name``: name of the campaign; that of the recording where it is not given. Raises SignalError if the
+    the campaign. Raises SignalError if the
     channel of the set point is missing, in another unit, or does not move, or if nothing in it is an excitation that a
     campaign file can describe.
     """
@@ -41,7 +41,7 @@ def describe_set_point(recording: "Recording", vessel: "Vessel", *, name: str | 
             volts,
             rate_hz=clock.rate_hz,
             start_s=clock.start_s,
-            name=name or recording.path.stem,
+            name=recording.path.stem,
             sample_rate_hz=channel.rate_hz,
         )
     except SignalError as error:

@@ -167,16 +167,16 @@ class TorsionalLine(Shown):
             reached |= more
 
 
-def torsional_line(vessel: "Vessel", *, load_slope: float = QUADRATIC_LAW) -> TorsionalLine:
+def torsional_line(vessel: "Vessel") -> TorsionalLine:
     """Return the torsional line of a vessel file.
+
+    The propeller damps by ``d ln M_p / d ln n`` of its torque at the working point, here of the quadratic law: a
+    damping ``slope M_s0 / omega_s0`` acts on the largest body downstream of the gauge.
 
     Parameters
     ----------
     vessel
         The installation, with its links.
-    load_slope
-        ``d ln M_p / d ln n`` of the propeller torque at the working point; its damping ``slope M_s0 / omega_s0`` acts
-        on the largest body downstream of the gauge.
 
     Raises
     ------
@@ -201,7 +201,7 @@ def torsional_line(vessel: "Vessel", *, load_slope: float = QUADRATIC_LAW) -> To
     point = vessel.working_point
     shaft_rad_s = 2.0 * math.pi * rev_s_from_rpm(point.engine_speed_rpm) / ratio
     load = np.zeros(len(groups))
-    load[propeller] = load_slope * point.driving_torque_nm / shaft_rad_s
+    load[propeller] = QUADRATIC_LAW * point.driving_torque_nm / shaft_rad_s
     return TorsionalLine(
         bodies=names,
         inertia_kg_m2=inertia,

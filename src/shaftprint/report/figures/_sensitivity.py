@@ -38,9 +38,9 @@ BEYOND_DATA_DEG = 200.0
 ROOM = 0.05
 
 
-def parameter_steps(parameter: "Parameter", steps: int = len(STEPS)) -> FloatArray:
-    """Return evenly spaced values of a parameter from its lower to its upper bound, shape (steps,)."""
-    return np.linspace(parameter.lower, parameter.upper, steps)
+def parameter_steps(parameter: "Parameter") -> FloatArray:
+    """Return evenly spaced values of a parameter from its lower to its upper bound, one for each of ``STEPS``."""
+    return np.linspace(parameter.lower, parameter.upper, len(STEPS))
 
 
 def sensitivity_chart(

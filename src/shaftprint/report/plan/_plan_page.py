@@ -33,12 +33,11 @@ if TYPE_CHECKING:
 
 
 @refusing_none(ReportError)
-def render_plan(directory: str | Path, test: "PlannedTest", *, overwrite: bool = False) -> Path:
+def render_plan(directory: str | Path, test: "PlannedTest") -> Path:
     """Write the page of a planned test, ``index.html`` with its charts; return its path.
 
     ``directory``: where the page goes; made if it does not exist. Other files there are left alone. ``test``: the
-    planned test. ``overwrite``: whether an earlier page there may be replaced. Raises FileExistsError if there is a
-    page already and ``overwrite`` is false; ReportError if plotly is not installed.
+    planned test. Raises FileExistsError if there is a page already; ReportError if plotly is not installed.
     """
     page = Page(
         title=f"Planned test of {test.vessel}",
@@ -61,7 +60,7 @@ def render_plan(directory: str | Path, test: "PlannedTest", *, overwrite: bool =
             "and bands hold 95 %."
         ),
     )
-    return write_page(directory, page, pictures=False, overwrite=overwrite, progress=None)
+    return write_page(directory, page)
 
 
 def _card(test: "PlannedTest") -> Section:

@@ -64,9 +64,7 @@ class Habits:
         )
 
 
-def lever_course(
-    habits: Habits, tug: Tug, vessel: Vessel, *, hours: float, rng: np.random.Generator, name: str = "service"
-) -> LeverCourse:
+def lever_course(habits: Habits, tug: Tug, vessel: Vessel, *, hours: float, rng: np.random.Generator) -> LeverCourse:
     """Return where a crew puts the lever over some hours, and when it takes the clutch out.
 
     Parameters
@@ -125,7 +123,7 @@ def lever_course(
     times, levels = np.array([corner for corner in corners if corner[0] < end_s]).T
     volts = (levels - tug.set_point_intercept_rpm) / tug.set_point_slope_rpm_per_v - tug.set_point_offset_v
     return LeverCourse(
-        name=name,
+        name="service",
         duration_s=end_s,
         offset_v=float(volts[0]),
         corner_s=tuple(times.tolist()),
