@@ -11,7 +11,14 @@ from collections.abc import Callable, Iterator
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, TypeVar
+
+
+class _Closing(Protocol):
+    def close(self) -> object: ...
+
+
+Closing = TypeVar("Closing", bound=_Closing)
 
 # Names may have 255 bytes, a letter up to four: so many letters of the stem and of the ending.
 _LONGEST = 24
@@ -106,6 +113,16 @@ def naming(path: Path, *, instead_of: Path | None = None) -> Iterator[None]:
         is_full = error.errno in _FULL and error.filename is None
         if is_full or (error.filename is not None and error.filename in _spellings(instead_of)):
             error.filename = str(path)
+        raise
+
+
+@contextlib.contextmanager
+def kept_open(resource: Closing) -> Iterator[Closing]:
+    """Leave a resource open for whom it is handed to, but close it where what is done with it first fails."""
+    try:
+        yield resource
+    except BaseException:
+        resource.close()
         raise
 
 

@@ -15,6 +15,8 @@ from typing import Any, BinaryIO
 
 import h5py
 
+from shaftprint.files import kept_open
+
 
 class Hdf5Output:
     """An HDF5 file to write; what is done to ``file`` is done within ``calls``."""
@@ -27,12 +29,8 @@ class Hdf5Output:
         """
         self._raw = path.open("w+b", buffering=0)
         self._disk = _Disk(self._raw)
-        try:
-            with self.calls():
-                self.file: Any = h5py.File(self._disk, "w", **options)
-        except BaseException:
-            self._raw.close()
-            raise
+        with kept_open(self._raw), self.calls():
+            self.file: Any = h5py.File(self._disk, "w", **options)
 
     @contextlib.contextmanager
     def calls(self) -> Iterator[None]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
+from shaftprint.files import kept_open
 
 if TYPE_CHECKING:
     from shaftprint.store.database._database import Database
@@ -48,7 +49,7 @@ def part_with_database() -> Any:
     return importlib.import_module(DATABASE)
 
 
-def _connected(url: str, *, create: bool, busy_s: float) -> Store:
+def _connected(url: str, *, create: bool, busy_s: float = 30.0) -> Store:
     rooms = part_with_database()
     database = rooms.connect(rooms.location_of(url), create=create, busy_s=busy_s)
     return Store(name=database.location.shown, database=database)
@@ -70,12 +71,8 @@ def create_store(url: str, *, busy_s: float = 30.0) -> Store:
     StoreError
         If there is one already, or the place cannot hold one.
     """
-    store = _connected(url, create=True, busy_s=busy_s)
-    try:
+    with kept_open(_connected(url, create=True, busy_s=busy_s)) as store:
         part_with_database().create(store.database)
-    except BaseException:
-        store.close()
-        raise
     return store
 
 
@@ -95,22 +92,18 @@ def open_store(url: str, *, busy_s: float = 30.0) -> Store:
     StoreError
         If there is none, or it is of an earlier or a later schema.
     """
-    store = _connected(url, create=False, busy_s=busy_s)
-    try:
+    with kept_open(_connected(url, create=False, busy_s=busy_s)) as store:
         part_with_database().expect_current(store.database)
-    except BaseException:
-        store.close()
-        raise
     return store
 
 
 @refusing_none(StoreError)
-def upgrade_store(url: str, *, busy_s: float = 30.0) -> tuple[str, str]:
+def upgrade_store(url: str) -> tuple[str, str]:
     """Bring a store of an earlier version of the program up to date, wholly or not at all.
 
-    ``url``: path of its file, or URL of its database. ``busy_s``: how long another writer is waited for [s]. Returns
-    its schema before and now. Raises StoreError if there is none, or it is of a later version.
+    ``url``: path of its file, or URL of its database. Returns its
+    schema before and now. Raises StoreError if there is none, or it is of a later version.
     """
-    with _connected(url, create=False, busy_s=busy_s) as store:
+    with _connected(url, create=False) as store:
         before, after = part_with_database().upgrade(store.database)
     return before, after

@@ -17,6 +17,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
+from shaftprint.files import kept_open
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, kept_clocks, on_clock
@@ -60,14 +61,9 @@ def read(path: Path, **hints: object) -> Recording:
     """
     expect_hints(path, hints, {})
     file = path.open("rb")
-    opened = Opened(path, file.close)
-    try:
-        with told_as_damage(path, NAME):
-            stored = _stored(file, path.stat().st_size)
-            return _Source(path=path, file=file, opened=opened, stored=stored).recording()
-    except BaseException:
-        opened.close()
-        raise
+    with kept_open(Opened(path, file.close)) as opened, told_as_damage(path, NAME):
+        stored = _stored(file, path.stat().st_size)
+        return _Source(path=path, file=file, opened=opened, stored=stored).recording()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

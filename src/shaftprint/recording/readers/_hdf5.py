@@ -6,11 +6,10 @@ from typing import Any
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
-from shaftprint.recording._channel import Source
+from shaftprint.files import kept_open
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._attributes import numbers_among, plain
 from shaftprint.recording.readers._damage import told_as_damage
@@ -20,7 +19,13 @@ from shaftprint.recording.readers._netcdf_values import CountRule, never_written
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
-from shaftprint.recording.readers.hdf5_files._open import CANNOT_BE_OPENED, expect_storage, is_hdf5, open_hdf5
+from shaftprint.recording.readers.hdf5_files._open import (
+    CANNOT_BE_OPENED,
+    expect_storage,
+    is_hdf5,
+    open_hdf5,
+    samples_along,
+)
 
 NAME = "HDF5 or NetCDF-4"
 
@@ -46,19 +51,14 @@ def read(path: Path, **hints: object) -> Recording:
     """
     rate, unit = rate_hint(path, hints, {"time_unit": str}), expect_time_unit(path, hints.get("time_unit"))
     file = open_hdf5(path, NAME)
-    opened = Opened(path, file.close)
-    try:
-        with told_as_damage(path, NAME):
-            _expect_no_pandas(path, file)
-            contents = _Contents(scalars={"": numbers_among(file.attrs)})
-            _walk(path, file, "", opened, contents, depth=0)
-            gathered = gather_vectors(
-                path, contents.vectors, contents.scalars, rate_hz=rate, time_unit=unit, left_out=contents.left_out
-            )
-            return gathered.recording_from_second_zero(NAME, opened.close)
-    except BaseException:
-        opened.close()
-        raise
+    with kept_open(Opened(path, file.close)) as opened, told_as_damage(path, NAME):
+        _expect_no_pandas(path, file)
+        contents = _Contents(scalars={"": numbers_among(file.attrs)})
+        _walk(path, file, "", opened, contents, depth=0)
+        gathered = gather_vectors(
+            path, contents.vectors, contents.scalars, rate_hz=rate, time_unit=unit, left_out=contents.left_out
+        )
+        return gathered.recording_from_second_zero(NAME, opened.close)
 
 
 def _expect_no_pandas(path: Path, file: Any) -> None:
@@ -139,7 +139,7 @@ def _keep_table(path: Path, item: Any, inside: str, along: int, opened: Opened, 
                 name=name,
                 group=inside,
                 count=int(item.shape[along]),
-                source=_source(path, name, item.fields(name), opened, along, item.ndim, _AS_THEY_ARE),
+                source=samples_along(opened, name, item.fields(name), item.ndim, along, _AS_THEY_ARE.values),
             )
         )
 
@@ -164,32 +164,9 @@ def _vector(path: Path, item: Any, key: str, group: str, opened: Opened, along: 
         name=key,
         group=group,
         count=int(item.shape[along]),
-        source=_source(path, key, item, opened, along, item.ndim, rule, place=place),
+        source=samples_along(opened, key, item, item.ndim, along, rule.values, place=place),
         axis=axis if scales and axis != key else "",
         attributes=attributes,
         scale=rule.scale,
         offset=rule.offset,
     )
-
-
-def _source(
-    path: Path,
-    name: str,
-    item: Any,
-    opened: Opened,
-    along: int,
-    axes: int,
-    rule: CountRule,
-    *,
-    place: int = 0,
-) -> Source:
-    def read_samples(start: int, stop: int) -> NDArray[Any]:
-        opened.expect_open(name)
-        where = tuple(slice(start, stop) if axis == along else place for axis in range(axes))
-        try:
-            counts: NDArray[Any] = item[where]
-        except (OSError, RuntimeError) as error:
-            raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are damaged ({error}).") from None
-        return rule.values(counts)
-
-    return read_samples

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
+from shaftprint.files import kept_open
 from shaftprint.recording._channel import Channel, Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording._spool import Spool
@@ -73,12 +74,8 @@ def read(path: Path, **hints: object) -> Recording:
             general, separator, segments = _scanned(path, file)
             if not segments:
                 raise RecordingError(f"{path}: expected segments with titles X_Value ..., found none.")
-            spool = Spool(path, [])
-            try:
+            with kept_open(Spool(path, [])) as spool:
                 return _recording(path, file, general, separator, segments, spool, rate_hz)
-            except BaseException:
-                spool.close()
-                raise
     except CANNOT_BE_UNPACKED as error:
         raise damaged_gzip(path, error) from None
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
+from shaftprint.files import kept_open
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, kept_clocks, on_clock, rows_between_cuts
@@ -67,26 +68,17 @@ def read(path: Path, **hints: object) -> Recording:
     _close_in_silence(asammdf)
     _expect_version(path)
     handle, is_finished_here = bytes_to_read(path)
-    try:
-        with told_as_damage(path, NAME) as said:
-            file = asammdf.MDF(handle, process_bus_logging=False)
-    except BaseException:
-        handle.close()
-        raise
+    with kept_open(handle), told_as_damage(path, NAME) as said:
+        file = asammdf.MDF(handle, process_bus_logging=False)
     closing = contextlib.ExitStack()
     closing.callback(handle.close)
     closing.callback(_close, file)
-    opened = Opened(path, closing.close)
-    try:
-        with told_as_damage(path, NAME):
-            gathered, words = _gather(path, file, opened, rate, hints, closing)
-            gathered.left_out.update(remarks(said, "asammdf"))
-            gathered.remarks.extend([FINISHED_HERE] * is_finished_here)
-            format = f"{NAME} {file.version}{words}"
-            return gathered.recording_from_its_zero(format, opened.close, _date(file))
-    except BaseException:
-        opened.close()
-        raise
+    with kept_open(Opened(path, closing.close)) as opened, told_as_damage(path, NAME):
+        gathered, words = _gather(path, file, opened, rate, hints, closing)
+        gathered.left_out.update(remarks(said, "asammdf"))
+        gathered.remarks.extend([FINISHED_HERE] * is_finished_here)
+        format = f"{NAME} {file.version}{words}"
+        return gathered.recording_from_its_zero(format, opened.close, _date(file))
 
 
 def _date(file: Any) -> datetime | None:

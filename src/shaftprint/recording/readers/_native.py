@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
+from shaftprint.files import kept_open
 from shaftprint.recording._channel import Channel, ClockJump, Times
 from shaftprint.recording._container import (
     BEGAN,
@@ -54,13 +55,8 @@ def read(path: Path, **hints: object) -> Recording:
     """
     expect_hints(path, hints, {})
     content = hashed(path)
-    file = open_hdf5(path, NAME, is_whole=content.is_sealed)
-    try:
-        with told_as_damage(path, NAME):
-            return _recording(path, file, content.sha256)
-    except BaseException:
-        file.close()
-        raise
+    with kept_open(open_hdf5(path, NAME, is_whole=content.is_sealed)) as file, told_as_damage(path, NAME):
+        return _recording(path, file, content.sha256)
 
 
 def _recording(path: Path, file: Any, sha256: str) -> Recording:

@@ -7,6 +7,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from shaftprint.files import kept_open
 from shaftprint.recording._channel import Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._attributes import numbers_among, plain
@@ -39,19 +40,15 @@ def read(path: Path, **hints: object) -> Recording:
     with told_as_damage(path, NAME):
         file = scipy.io.netcdf_file(path, "r", mmap=False)
         opened = Opened(path, file.close)
-    try:
-        with told_as_damage(path, NAME):
-            vectors = [
-                _vector(path, name, variable, opened)
-                for name, variable in file.variables.items()
-                if len(variable.shape) == 1 and int(variable.shape[0]) > 1 and variable.typecode() in "hifdb"
-            ]
-            scalars = {"": numbers_among(vars(file)["_attributes"])}
-            gathered = gather_vectors(path, vectors, scalars, rate_hz=rate, time_unit=unit)
-            return gathered.recording_from_second_zero(NAME, opened.close)
-    except BaseException:
-        opened.close()
-        raise
+    with kept_open(opened), told_as_damage(path, NAME):
+        vectors = [
+            _vector(path, name, variable, opened)
+            for name, variable in file.variables.items()
+            if len(variable.shape) == 1 and int(variable.shape[0]) > 1 and variable.typecode() in "hifdb"
+        ]
+        scalars = {"": numbers_among(vars(file)["_attributes"])}
+        gathered = gather_vectors(path, vectors, scalars, rate_hz=rate, time_unit=unit)
+        return gathered.recording_from_second_zero(NAME, opened.close)
 
 
 def _vector(path: Path, name: str, variable: Any, opened: Opened) -> Vector:

@@ -16,7 +16,8 @@ class Opened:
 
         ``path``: the file, for messages. ``close``: what releases it.
         """
-        self._path = path
+        self.path = path
+        """File of the recording, for messages."""
         self._close = close
         self._is_open = True
         self._turn = threading.Lock()
@@ -37,7 +38,7 @@ class Opened:
         Raises RecordingError if it has been.
         """
         if not self._is_open:
-            raise RecordingError(f"{self._path}, channel {name}: the recording has been closed already.")
+            raise RecordingError(f"{self.path}, channel {name}: the recording has been closed already.")
 
     def close(self) -> None:
         """Release the file, once."""

@@ -13,6 +13,7 @@ from typing import Any, Final
 import sqlalchemy as sa
 
 from shaftprint.errors import DatabaseError, StoreError
+from shaftprint.files import kept_open
 from shaftprint.store.database._hashes import Hashes
 from shaftprint.store.database._ledger import Ledger
 from shaftprint.store.database._location import Location
@@ -173,13 +174,11 @@ def _file(path: Path, mode: str, *, busy_s: float) -> sa.Engine:
 
     def opened() -> sqlite3.Connection:
         # transactions are begun below, not by the driver
-        connection = sqlite3.connect(name, uri=True, timeout=busy_s, isolation_level=None, check_same_thread=False)
-        try:
+        with kept_open(
+            sqlite3.connect(name, uri=True, timeout=busy_s, isolation_level=None, check_same_thread=False)
+        ) as connection:
             for pragma in ("foreign_keys=ON", "synchronous=FULL", "trusted_schema=OFF", "cell_size_check=ON"):
                 connection.execute(f"PRAGMA {pragma}")
-        except BaseException:
-            connection.close()
-            raise
         return connection
 
     engine = sa.create_engine("sqlite://", creator=opened, poolclass=sa.pool.QueuePool, pool_size=1)

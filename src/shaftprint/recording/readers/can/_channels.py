@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
+from shaftprint.files import kept_open
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, kept_clocks, on_clock
@@ -40,13 +41,9 @@ def decoded(path: Path, log: FrameLog, database: Database) -> Decoded:
     ``path``: the file. ``log``: its frames. ``database``: what they hold. Raises RecordingError if the log is longer
     unpacked than such a file can be.
     """
-    spool = Spool(path, [])
-    try:
+    with kept_open(Spool(path, [])) as spool:
         streams = Streams(path=path, log=log, database=database, spool=spool)
         streams.fill()
-    except BaseException:
-        spool.close()
-        raise
     signals = [(stream, signal) for stream in streams.streams.values() for signal in stream.tallies]
     clock_of = kept_clocks(partial(_clock, streams))
     return Decoded(

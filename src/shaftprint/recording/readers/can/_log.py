@@ -5,6 +5,7 @@ import io
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
+from shaftprint.files import kept_open
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._extra import library
@@ -46,15 +47,11 @@ def read(path: Path, **hints: object) -> Recording:
         chosen = chosen_database(path, hints, lambda: _open(path, stack))
         log = _open(path, stack)
         taken = decoded(path, log, chosen.database)
-    opened = Opened(path, taken.close)
-    try:
+    with kept_open(Opened(path, taken.close)) as opened:
         expect_known(path, taken, chosen)
         gathered = Gathered(path=path, remarks=[chosen.remark] if chosen.remark else [])
         add_signals(gathered, taken, unique_names(list(taken.named)))
         return gathered.recording(f"{NAME} ({log.kind}){chosen.words}", opened.close, log.began)
-    except BaseException:
-        opened.close()
-        raise
 
 
 def expect_known(path: Path, taken: Decoded, chosen: Chosen) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import IO, TextIO, cast
 
 from shaftprint.errors import RecordingError
+from shaftprint.files import kept_open
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers import _uff
@@ -95,8 +96,7 @@ def read(path: Path, **hints: object) -> Recording:
                 columns=cast("str | None", hints.get("columns")),
                 has_rate=rate_hz is not None,
             )
-        spool = Spool(path, header.names)
-        try:
+        with kept_open(Spool(path, header.names)) as spool:
             # the hash takes as long as the reading: both at once
             with _numbers(path, encoding) as content, ThreadPoolExecutor(1) as pool:
                 digest = pool.submit(sha256_of, path)
@@ -107,9 +107,6 @@ def read(path: Path, **hints: object) -> Recording:
                 done.count = done.full
             done.remarks += [guessed] if guessed else []
             return _recording(path, sha256, header, spool, done, rate_hz or header.rate_hz, time_unit)
-        except BaseException:
-            spool.close()
-            raise
     except (UnicodeError, LookupError) as error:
         raise RecordingError(
             f"{path}: expected text in {encoding}, found {error}; pass encoding= (--encoding, such as cp1252)."

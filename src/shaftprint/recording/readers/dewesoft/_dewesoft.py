@@ -13,6 +13,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
+from shaftprint.files import kept_open
 from shaftprint.recording._channel import Channel, Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
@@ -42,8 +43,7 @@ def read(path: Path, **hints: object) -> Recording:
     expect_hints(path, hints, {})
     expect_library(path, "dwdatareader", NAME)
     folder = tempfile.TemporaryDirectory(prefix="shaftprint-", ignore_cleanup_errors=True)
-    opened = Opened(path, folder.cleanup)
-    try:
+    with kept_open(Opened(path, folder.cleanup)) as opened:
         index = _unpack(path, Path(folder.name))
         with told_as_damage(path, NAME):
             gathered = Gathered(path=path)
@@ -52,9 +52,6 @@ def read(path: Path, **hints: object) -> Recording:
                 gathered.add(unpacked.name, partial(_channel, path, unpacked, Path(folder.name), opened))
             began = index["began"]
             return gathered.recording(NAME, opened.close, None if began is None else datetime.fromisoformat(began))
-    except BaseException:
-        opened.close()
-        raise
 
 
 def _unpack(path: Path, folder: Path) -> Any:

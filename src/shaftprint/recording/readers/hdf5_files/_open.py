@@ -1,13 +1,18 @@
 """Opening HDF5 files without hanging on damaged ones."""
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import h5py
+from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
+from shaftprint.files import kept_open
+from shaftprint.recording._channel import Source
 from shaftprint.recording.readers._damage import comes_to_an_end, expect_plausible, told_as_damage
+from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers.hdf5_files import _probe
 from shaftprint.recording.readers.hdf5_files._references import outside_of, stored_outside
 
@@ -43,11 +48,8 @@ def open_hdf5(path: Path, what: str, *, is_whole: bool = False) -> Any:
         )
     with told_as_damage(path, what):
         file = h5py.File(path, "r")
-    try:
+    with kept_open(file):
         _expect_nothing_outside(path, outside_of(file))
-    except RecordingError:
-        file.close()
-        raise
     return file
 
 
@@ -88,3 +90,32 @@ def expect_storage(path: Path, name: str, dataset: Any) -> None:
             f"{path}, channel {name}: expected blocks of at most {_LARGEST_BLOCK >> 20} MiB, found blocks of "
             f"{block >> 20} MiB; if the file is not damaged, write it with smaller ones (h5repack -l CHUNK=262144)."
         )
+
+
+def samples_along(
+    opened: Opened,
+    name: str,
+    dataset: Any,
+    axes: int,
+    along: int,
+    values: Callable[[NDArray[Any]], NDArray[Any]],
+    *,
+    place: int = 0,
+) -> Source:
+    """Return the source of what lies along one axis of a data set, at one place of its others.
+
+    ``opened``: its file. ``name``: the channel, for messages. ``axes``: how many there are. ``values``: makes values of
+    what is stored.
+    """
+
+    def read_samples(start: int, stop: int) -> NDArray[Any]:
+        opened.expect_open(name)
+        try:
+            stored = dataset[tuple(slice(start, stop) if axis == along else place for axis in range(axes))]
+        except (OSError, RuntimeError) as error:
+            raise RecordingError(
+                f"{opened.path}, channel {name}: samples [{start}, {stop}) are damaged ({error})."
+            ) from None
+        return values(stored)
+
+    return read_samples

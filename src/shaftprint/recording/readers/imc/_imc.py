@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
+from shaftprint.files import kept_open
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
@@ -49,17 +50,12 @@ def read(path: Path, **hints: object) -> Recording:
     expect_hints(path, hints, {"time_unit": str})
     time_unit = expect_time_unit(path, hints.get("time_unit"))
     file = path.open("rb")
-    opened = Opened(path, file.close)
-    try:
-        with told_as_damage(path, NAME):
-            layout = Layout()
-            for block in blocks_of(path, file):
-                layout.learn(block)
-            layout.complete()
-            return _Source(path=path, file=file, opened=opened, layout=layout, time_unit=time_unit).recording()
-    except BaseException:
-        opened.close()
-        raise
+    with kept_open(Opened(path, file.close)) as opened, told_as_damage(path, NAME):
+        layout = Layout()
+        for block in blocks_of(path, file):
+            layout.learn(block)
+        layout.complete()
+        return _Source(path=path, file=file, opened=opened, layout=layout, time_unit=time_unit).recording()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

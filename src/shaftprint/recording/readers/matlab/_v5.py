@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from shaftprint.files import kept_open
 from shaftprint.recording._channel import Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording._spool import Spool
@@ -68,15 +69,11 @@ def read(path: Path, **hints: object) -> Recording:
         if {header.name for header in headers} >= _modelica.VARIABLES:
             trajectories = _modelica.read_trajectories(path, rate_hz=rate)
             return trajectories.recording(_modelica.NAME, lambda: None)
-        spool = Spool(path, ())
-        try:
+        with kept_open(Spool(path, ())) as spool:
             variables = _survey(path, headers, spool, titles_of(hints))
             gathered = gather_variables(path, variables, rate_hz=rate, time_unit=unit)
             spool.finish()
             return gathered.recording_from_second_zero(NAME, spool.close)
-        except BaseException:
-            spool.close()
-            raise
 
 
 def _is_v4(begin: bytes) -> bool:

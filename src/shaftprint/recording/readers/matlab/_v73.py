@@ -7,15 +7,14 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from shaftprint.errors import RecordingError
-from shaftprint.recording._channel import Source
+from shaftprint.files import kept_open
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector
-from shaftprint.recording.readers.hdf5_files._open import CANNOT_BE_OPENED, expect_storage, open_hdf5
+from shaftprint.recording.readers.hdf5_files._open import CANNOT_BE_OPENED, expect_storage, open_hdf5, samples_along
 from shaftprint.recording.readers.matlab._objects import keep_objects
 from shaftprint.recording.readers.matlab._variables import (
     MOST_STRUCTURES,
@@ -61,18 +60,13 @@ def read(path: Path, **hints: object) -> Recording:
     rate = rate_hint(path, hints, {"columns": str, "time_unit": str})
     unit = expect_time_unit(path, hints.get("time_unit"))
     file = open_hdf5(path, "MATLAB")
-    opened = Opened(path, file.close)
-    try:
-        with told_as_damage(path, "MATLAB"):
-            variables = MatVariables(titles=titles_of(hints))
-            objects: dict[str, str] = {}
-            _survey(path, file, "", file, opened, variables, objects)
-            keep_objects(path, objects, variables)
-            gathered = gather_variables(path, variables, rate_hz=rate, time_unit=unit)
-            return gathered.recording_from_second_zero(NAME, opened.close)
-    except BaseException:
-        opened.close()
-        raise
+    with kept_open(Opened(path, file.close)) as opened, told_as_damage(path, "MATLAB"):
+        variables = MatVariables(titles=titles_of(hints))
+        objects: dict[str, str] = {}
+        _survey(path, file, "", file, opened, variables, objects)
+        keep_objects(path, objects, variables)
+        gathered = gather_variables(path, variables, rate_hz=rate, time_unit=unit)
+        return gathered.recording_from_second_zero(NAME, opened.close)
 
 
 def _survey(
@@ -124,36 +118,23 @@ def _keep(path: Path, item: Any, key: str, group: str, kind: bytes, opened: Open
     elif item.size == length:
         expect_storage(path, inside, item)
         variables.vectors.append(
-            Vector(name=key, group=group, count=int(item.size), source=_source(path, key, item, opened))
+            Vector(
+                name=key,
+                group=group,
+                count=int(item.size),
+                source=samples_along(opened, key, item, item.ndim, int(np.argmax(item.shape)), _as_numbers),
+            )
         )
     else:
         expect_storage(path, inside, item)
-        variables.add_table(inside, item.shape[::-1], lambda number: _column(path, key, item, number, opened))
+        variables.add_table(
+            inside, item.shape[::-1], lambda number: samples_along(opened, key, item, 2, 1, _as_floats, place=number)
+        )
 
 
-def _column(path: Path, name: str, dataset: Any, number: int, opened: Opened) -> Source:
-    """Return the source of a column of a table; MATLAB's columns are rows of the file."""
-
-    def read_samples(start: int, stop: int) -> NDArray[Any]:
-        opened.expect_open(name)
-        try:
-            return np.asarray(dataset[number, start:stop], dtype=np.float64)
-        except (OSError, RuntimeError) as error:
-            raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are damaged ({error}).") from None
-
-    return read_samples
+def _as_floats(stored: NDArray[Any]) -> NDArray[Any]:
+    return np.asarray(stored, dtype=np.float64)
 
 
-def _source(path: Path, name: str, dataset: Any, opened: Opened) -> Source:
-    along = int(np.argmax(dataset.shape))
-
-    def read_samples(start: int, stop: int) -> NDArray[Any]:
-        opened.expect_open(name)
-        where = tuple(slice(start, stop) if axis == along else 0 for axis in range(dataset.ndim))
-        try:
-            values: NDArray[Any] = dataset[where]
-        except (OSError, RuntimeError) as error:
-            raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are damaged ({error}).") from None
-        return values.astype(np.int16) if values.dtype == np.int16 else values.astype(np.float64)
-
-    return read_samples
+def _as_numbers(stored: NDArray[Any]) -> NDArray[Any]:
+    return stored if stored.dtype == np.int16 else _as_floats(stored)

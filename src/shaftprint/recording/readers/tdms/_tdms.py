@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
+from shaftprint.files import kept_open
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import SampleClock, on_clock
@@ -66,24 +67,19 @@ def read(path: Path, **hints: object) -> Recording:
     nptdms = library(path, "nptdms", NAME)
     # the library leaves a file open that it fails to read
     raw = path.open("rb")
-    opened = Opened(path, raw.close)
-    try:
-        with told_as_damage(path, NAME) as said:
-            file = nptdms.TdmsFile.open(raw)
-            parts, doubts = parts_of(nptdms, raw)
-            return _Source(
-                path=path,
-                file=file,
-                opened=opened,
-                parts=parts,
-                gathered=Gathered(path=path, left_out=remarks(said, "npTDMS") | doubts),
-                rate_hz=rate,
-                time_unit=time_unit,
-                interleaved=interleaved,
-            ).recording()
-    except BaseException:
-        opened.close()
-        raise
+    with kept_open(Opened(path, raw.close)) as opened, told_as_damage(path, NAME) as said:
+        file = nptdms.TdmsFile.open(raw)
+        parts, doubts = parts_of(nptdms, raw)
+        return _Source(
+            path=path,
+            file=file,
+            opened=opened,
+            parts=parts,
+            gathered=Gathered(path=path, left_out=remarks(said, "npTDMS") | doubts),
+            rate_hz=rate,
+            time_unit=time_unit,
+            interleaved=interleaved,
+        ).recording()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
