@@ -118,6 +118,7 @@ class AscLines(Lines):
         return first
 
     def changed(self, line: str) -> str:
+        """Return the line with its time counted from the beginning of the measurement."""
         row = _ASC_ROW.match(line)
         if row is None:
             self._take_header(line)
