@@ -125,14 +125,20 @@ def test_many_lines_left_out_are_worth_a_look(fingerprint):
     assert "Data quality" in card.action
 
 
-def test_remarks_are_counted_and_stand_among_the_findings(fingerprint):
-    remarks = ("channel M_s reaches 1.02 of its range.",)
-    quality = fingerprint.quality.model_copy(update={"remarks": remarks, "repairs": {"M_s: outlier": 156}})
-    remarked = fingerprint.model_copy(update={"quality": quality})
-    card = answers(remarked)["Were the measurements good?"]
-    assert card.sentence.endswith("156 places were repaired. There is one remark on the signals.")
-    assert "Findings" in card.action
-    assert summary_section(SimpleNamespace(fingerprint=remarked)).points[-1] == remarks[0]
+def test_one_remark_is_said_more_are_counted_and_all_stand_among_the_findings(fingerprint):
+    remarks = ("channel M_s reaches 1.02 of its range.", "channel n_e has two gaps.")
+    said = {}
+    for count in (1, 2):
+        quality = fingerprint.quality.model_copy(update={"remarks": remarks[:count], "repairs": {"M_s: outlier": 156}})
+        remarked = fingerprint.model_copy(update={"quality": quality})
+        said[count] = answers(remarked)["Were the measurements good?"]
+        assert said[count].state == "look"
+        assert summary_section(SimpleNamespace(fingerprint=remarked)).points[-count:] == remarks[:count]
+    one, two = said[1], said[2]
+    assert one.sentence.endswith("places were repaired. One remark: channel M_s reaches 1.02 of its range.")
+    assert one.action.endswith("Mend what it names: a sensor, its wiring, or the test.")
+    assert two.sentence.endswith("156 places were repaired. There are 2 remarks on the signals.")
+    assert "Findings" in two.action
 
 
 def test_every_point_that_is_not_fine_says_what_to_do(fingerprint):

@@ -161,7 +161,8 @@ class Fingerprint(Labelled, LineFingerprint):
         }
 
     @property
-    def _of_working_point(self) -> Sequence[Estimate]:
+    def working_point(self) -> Sequence[Estimate]:
+        """Engine speed and shaft torque about which the numbers hold."""
         return (self.conditions.engine_speed, self.conditions.shaft_torque)
 
     @property

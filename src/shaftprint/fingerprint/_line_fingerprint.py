@@ -135,11 +135,11 @@ class LineFingerprint(Shown, Record):
     @property
     def by_name(self) -> dict[str, Estimate]:
         """All numbers by their names, those of the working point too."""
-        every = [*self._of_working_point, *(quantity for kind in self.numbers.values() for quantity in kind)]
+        every = [*self.working_point, *(quantity for kind in self.numbers.values() for quantity in kind)]
         return {quantity.name: quantity for quantity in every}
 
     @property
-    def _of_working_point(self) -> Sequence[Estimate]:
+    def working_point(self) -> Sequence[Estimate]:
         return ()
 
     if not TYPE_CHECKING:  # or every attribute would be one for the type checker

@@ -77,7 +77,7 @@ def _doubt(
     prior = identification.settings.priors.get(estimate.name)
     if prior is not None and std > requirements.largest_prior_share * prior.std:
         smaller = round(100.0 * (1.0 - std / prior.std))
-        by_little = f": {smaller} % off its standard deviation" if smaller > 0 else ""
+        by_little = f": its standard deviation is {smaller} % smaller" if smaller > 0 else ""
         return f"the test adds almost nothing to what was known before{by_little}"
     size = _size(identification, estimate)
     if std > requirements.largest_std * size:

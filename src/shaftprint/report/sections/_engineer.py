@@ -7,11 +7,11 @@ from shaftprint.digits import unit_text, with_deviation
 from shaftprint.plain_table import MEANING, Column
 from shaftprint.report.figures._covariance import budget_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
-from shaftprint.spelling import listed
 from shaftprint.tables._fingerprint import quantity_table
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.identify.fit._estimate import Estimate
 
 BUDGET_OPENING = (
     "From the noise of the measured lines, and from priors: the inertias of the vessel file (TVC), scale and latency "
@@ -46,37 +46,29 @@ def _conditions(fingerprint: "Fingerprint") -> str:
 
 
 def number_section(inputs: Inputs) -> Section:
-    """Return all identified numbers in one table, each with whether the verdict lets it be used."""
+    """Return all identified numbers in one table, each with whether the verdict lets it be used, or why not."""
     fingerprint = inputs.fingerprint
     groups = (fingerprint.parameters, fingerprint.combinations, fingerprint.physical, fingerprint.margins)
-    quantities = [quantity for group in groups for quantity in group]
+    quantities = [*fingerprint.working_point, *(quantity for group in groups for quantity in group)]
     table = quantity_table("Identified numbers", quantities)
-    not_trusted = fingerprint.verdict.not_trusted if fingerprint.verdict.trustworthy else {}
-    doubts = list(dict.fromkeys(not_trusted[one.name] for one in quantities if one.name in not_trusted))
-    usable = tuple(_usable(fingerprint, quantity.name, doubts) for quantity in quantities)
     # the appendix has the differences; a unit stands with its value, which leaves room for the meaning
     kept = [place for place, column in enumerate(table.columns[:-2]) if place > 1 and column.heading != "difference"]
     rows = tuple(
-        (row[0], f"{row[1]} {row[-2]}".strip(), *(row[i] for i in kept), words, row[-1])
-        for row, words in zip(table.rows, usable, strict=True)
+        (row[0], f"{row[1]} {row[-2]}".strip(), *(row[i] for i in kept), *_usable(fingerprint, quantity))
+        for row, quantity in zip(table.rows, quantities, strict=True)
     )
     columns = (*table.columns[:2], *(table.columns[i] for i in kept), Column("usable"), MEANING)
-    listed_doubts = "; ".join(f"({number}) {doubt}" for number, doubt in enumerate(doubts, start=1))
-    note = f"Not to be used: {listed_doubts}. {table.note}" if doubts else table.note
-    counted = {*fingerprint.verdict.trusted, *fingerprint.verdict.not_trusted}
-    others = sorted(counted - {quantity.name for quantity in quantities})
-    if others:
-        note += f" {listed(others)}, which stand above, are counted on page one too."
-    shown = replace(table, columns=columns, rows=rows, note=note)
+    shown = replace(table, columns=columns, rows=rows)
     return Section(key="numbers", title="What was identified", tables=(shown,))
 
 
-def _usable(fingerprint: "Fingerprint", name: str, doubts: list[str]) -> str:
+def _usable(fingerprint: "Fingerprint", quantity: "Estimate") -> tuple[str, str]:
+    """Return whether a number may be used, and its meaning with the reason why not."""
     verdict = fingerprint.verdict
-    if not verdict.trustworthy:
-        return "no"
-    doubt = verdict.not_trusted.get(name)
-    return f"no ({doubts.index(doubt) + 1})" if doubt else "yes"
+    doubt = verdict.not_trusted.get(quantity.name) if verdict.trustworthy else None
+    if doubt:
+        return "no", f"{quantity.meaning}. Not to be used: {doubt}"
+    return "yes" if verdict.trustworthy else "no", quantity.meaning
 
 
 def budget_section(inputs: Inputs) -> list[Section]:

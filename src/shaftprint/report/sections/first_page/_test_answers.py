@@ -21,6 +21,7 @@ COMMON_ZERO = 2.0
 LEFT_OUT = 0.25
 # Share of the numbers that must be known before all is fine.
 MOST = 2.0 / 3.0
+READ_REMARKS = "Read the remarks under Findings, and mend what they name"
 
 
 def usable(fingerprint: "Fingerprint") -> Card:
@@ -122,15 +123,17 @@ def measured(fingerprint: "Fingerprint") -> Card:
     words += f", {repairs} {'place was' if repairs == 1 else 'places were'} repaired." if repairs else "; no repairs."
     many = left_out > LEFT_OUT * (used + left_out)
     remarks = len(quality.remarks)
-    if remarks:
-        words += f" There {'is one remark' if remarks == 1 else f'are {remarks} remarks'} on the signals."
+    if remarks == 1:
+        words += f" One remark: {quality.remarks[0].removesuffix('.')}."
+    elif remarks:
+        words += f" There are {remarks} remarks on the signals."
     actions = []
     if many:
         actions.append(
             "Read under Data quality why so many test frequencies were left out before the test is repeated."
         )
     if remarks:
-        actions.append("Read the remarks under Findings, and mend what they name: a sensor, its wiring, or the test.")
+        actions.append(f"{'Mend what it names' if remarks == 1 else READ_REMARKS}: a sensor, its wiring, or the test.")
     return Card(
         question="Were the measurements good?",
         state="look" if many or remarks else "fine",
