@@ -39,6 +39,8 @@ LONG = {"docs/thesis-figures.md", "docs/gallery.md", "docs/command-output.md"} |
 }
 SLOW = {"docs/house.md", "docs/planning.md"}
 DEAR = {"long": LONG, "slow": SLOW}
+# at a window 1280 wide
+LONGEST_LINE_OF_A_CELL = 88
 # their first lines ask for the short demo
 WITH_DEMO = {"docs/house.md", "docs/library.md"}
 # Kinds of blocks, each with the file that holds them against something.
@@ -91,6 +93,13 @@ def test_a_cell_that_is_left_out_with_ones_own_files_holds_no_import():
         (cell, *_) = re.findall(r"```\{code-cell\}[^\n]*\n(.*?)```", cells, re.DOTALL)
         assert "sp.tug.sail(" in cell, page
         assert not re.search(r"^\s*(?:import|from) ", cell, re.MULTILINE), page
+
+
+def test_a_cell_that_is_shown_fits_between_the_columns_of_contents():
+    cells = [text for page in PAGES for kind, text in blocks(page) if kind == "{code-cell} ipython3"]
+    seen = [cell for cell in cells if "tags: [remove-" not in cell]
+    assert len(seen) > 40
+    assert [line for cell in seen for line in cell.splitlines() if len(line) > LONGEST_LINE_OF_A_CELL] == []
 
 
 def test_pages_with_tests_of_their_own_are_run_there():
