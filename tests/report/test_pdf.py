@@ -93,3 +93,10 @@ def test_a_survey_gives_page_one_and_a_summary(tmp_path, survey):
     content = render_pdf(tmp_path / "out.pdf", survey).read_bytes()
     assert 3 <= pages(content) <= 4
     assert pictures(content) >= 2
+
+
+def test_a_command_in_a_sentence_is_printed_as_words(tmp_path, fingerprint, vessel):
+    """ReportLab refuses what it does not know as a tag."""
+    typed = replace(fingerprint.verdict, cautions=("Read `shaftprint limits --records St1`, or --after.",))
+    told = fingerprint.model_copy(update={"verdict": typed})
+    assert written(tmp_path / "told.pdf", told, vessel) != written(tmp_path / "out.pdf", fingerprint, vessel)

@@ -145,9 +145,9 @@ def _first_test(stated: _Stated, limits: Limits, within_s: float | None) -> tupl
         return ()
     third = f"{limits.set_point_rpm / 3.0:.0f}rpm"
     return (
-        "Nobody has measured the noise of this ship. A first test of 90 s does: plan "
-        f"--within {FIRST_TEST_S:g}s --limit set-point={third}, sail and identify it, and plan again with --after and "
-        "its fingerprint; the noise of the plan is then that of this ship.",
+        "Nobody has measured the noise of this ship. A first test of 90 s does: "
+        f"`plan --within {FIRST_TEST_S:g}s --limit set-point={third}`, sail and identify it, and plan again with "
+        "--after and its fingerprint; the noise of the plan is then that of this ship.",
     )
 
 

@@ -9,6 +9,8 @@ from shaftprint.markup._symbols import is_symbol, name_parts
 from shaftprint.plain_table import Symbol, Table
 
 _SYMBOL = re.compile(r"\b(?:(?:[A-Za-z]|tau|omega)_[A-Za-z0-9]+|zeta)\b")
+# what is typed: a command between backticks, or an option by itself
+_TYPED = re.compile(r"`[^`\n]+`|(?<![\w-])--[a-z][a-z-]+")
 _LETTERS = {"tau": "τ", "omega": "ω", "zeta": "ζ", "delta": "δ", "eta": "η", "rho": "ρ"}
 
 
@@ -21,7 +23,16 @@ def cell_html(text: str, table: Table) -> Markup:
 
 
 def sentence_html(text: str) -> Markup:
-    """Return a sentence as HTML, symbols with an index or a Greek name set as such, ± and powers of ten."""
+    """Return a sentence as HTML: symbols with an index or a Greek name set as such, ± and powers of ten, commands."""
+    parts, end = Markup(), 0
+    for match in _TYPED.finditer(text):
+        words = Markup(" ").join(Markup("<span>{}</span>").format(word) for word in match[0].strip("`").split())
+        parts += _words_html(text[end : match.start()]) + Markup("<code>{}</code>").format(words)
+        end = match.end()
+    return parts + _words_html(text[end:])
+
+
+def _words_html(text: str) -> Markup:
     text = typographic(text)
     parts, end = Markup(), 0
     for match in _SYMBOL.finditer(text):

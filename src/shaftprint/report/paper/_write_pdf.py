@@ -144,7 +144,11 @@ def _section(section: "Section", looks: Looks) -> list[Any]:
         points = [looks.paragraph(text, "text") for text in section.points]
         story.append(ListFlowable(points, bulletType="bullet", start="•", leftIndent=10))
     story += [KeepTogether(_table(table, looks)) for table in section.tables]
-    return story + [part for picture in section.pictures for part in _picture(picture, looks)]
+    drawn = [_picture(picture, looks) for picture in section.pictures]
+    if drawn and not section.tables:
+        # a heading does not stay behind on the sheet before its picture
+        story, drawn = [KeepTogether([*story, *drawn[0]])], drawn[1:]
+    return story + [KeepTogether(one) for one in drawn]
 
 
 def _table(table: "Table", looks: Looks) -> list[Any]:
@@ -168,19 +172,24 @@ def _table(table: "Table", looks: Looks) -> list[Any]:
 
 
 def _letters(table: "Table") -> list[int]:
-    """Return how wide the columns are, in letters: as the longest cell or word of the heading, the widest held back."""
-    wanted = [
-        max(
-            FEWEST_LETTERS,
-            *(len(word) + BOLD_LETTERS for word in column.heading.split()),
-            *(len(row[place]) for row in table.rows),
-        )
-        for place, column in enumerate(table.columns)
-    ]
-    most = MOST_LETTERS
-    while most > FEWEST_LETTERS and sum(min(most, one) for one in wanted) > ACROSS_LETTERS:
-        most -= 1
-    return [min(most, one) for one in wanted]
+    """Return how wide the columns are, in letters.
+
+    All cells in one line where they fit; else numbers in one line, and texts share what is left by how much they say.
+    """
+    least, whole, beyond = [], [], []
+    for place, column in enumerate(table.columns):
+        cells = [row[place] for row in table.rows]
+        heading = [len(word) + BOLD_LETTERS for word in column.heading.split()]
+        parts = cells if column.number else [word for cell in cells for word in cell.split()]
+        least.append(min(max(FEWEST_LETTERS, *heading, *map(len, parts)), MOST_LETTERS))
+        whole.append(max(least[-1], *map(len, cells)))
+        beyond.append(sum(max(len(cell) - least[-1], 0) for cell in cells))
+    spare = ACROSS_LETTERS - sum(least)
+    if sum(whole) <= ACROSS_LETTERS:
+        return whole
+    if spare <= 0:
+        return least
+    return [one + round(spare * share / sum(beyond)) for one, share in zip(least, beyond, strict=True)]
 
 
 def _picture(picture: "Picture", looks: Looks) -> list[Any]:
@@ -192,4 +201,4 @@ def _picture(picture: "Picture", looks: Looks) -> list[Any]:
     figure = draw(chart, size_cm=(WIDTH_MM / SHRUNK / 10.0, height_mm / SHRUNK / 10.0))
     figure.savefig(content, format="png", dpi=200)
     drawn = Image(content, width=WIDTH_MM * mm, height=height_mm * mm)
-    return [KeepTogether([drawn, looks.paragraph(picture.caption, "small")])]
+    return [drawn, looks.paragraph(picture.caption, "small")]

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.design.plan._plan import length_words
 from shaftprint.digits import plain
+from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.report.sections._cover import Card, Cover
 from shaftprint.tables._plan import swing_words, wish_table
 from shaftprint.units import PERCENT
@@ -46,8 +47,7 @@ def _facts(test: "PlannedTest") -> list[tuple[str, str]]:
 def _wishes(test: "PlannedTest") -> Card:
     plan, question = test.plan, "Does it meet the wishes?"
     if not plan.wish.names:
-        words = "It makes all numbers of the line known as well as its limits allow."
-        return Card(question=question, state="open", answer="None stated", sentence=words)
+        return _told(test)
     ratios = plan.ratios
     missed = sorted((name for name, ratio in ratios.items() if not ratio <= 1.0), key=lambda name: -ratios[name])
     if not missed:
@@ -57,6 +57,22 @@ def _wishes(test: "PlannedTest") -> Card:
     words = ", ".join(f"{name} {ratios[name]:.3g} times" for name in missed)
     action = test.remedies[0].sentence if test.remedies else "Allow more time or a larger set point."
     return Card(question=question, state="bad", sentence=f"Not all; predicted over the wish: {words}.", action=action)
+
+
+def _told(test: "PlannedTest") -> Card:
+    """Return what the test would tell where nothing is wished, by what the verdict on it will ask."""
+    least = PERCENT * Requirements().largest_std
+    shares = {
+        one.name: PERCENT * one.std / abs(one.value) for one in test.plan.promised.values() if one.value and one.std
+    }
+    order = sorted(shares, key=lambda name: shares[name])
+    known, others = (
+        [f"{name} {shares[name]:.2g} %" for name in order if (shares[name] <= least) is side] for side in (True, False)
+    )
+    words = f"In one standard deviation: {', '.join(known)}." if known else ""
+    words += f" Beyond that: {', '.join(others)}." if others else ""
+    answer = f"{len(known)} of {len(order)} numbers to {least:g} % or better"
+    return Card(question="What would it tell?", state="open", answer=answer, sentence=words.strip())
 
 
 def _limits(test: "PlannedTest") -> Card:
