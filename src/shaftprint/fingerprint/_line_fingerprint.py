@@ -140,6 +140,7 @@ class LineFingerprint(Shown, Record):
 
     @property
     def working_point(self) -> Sequence[Estimate]:
+        """Speed and torque about which the numbers hold; empty for what has no such point."""
         return ()
 
     if not TYPE_CHECKING:  # or every attribute would be one for the type checker
