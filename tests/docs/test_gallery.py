@@ -11,7 +11,9 @@ CHARTS = {name for name in report.__all__ if name.endswith("_chart") and name !=
 
 
 def test_every_chart_is_drawn_or_it_is_said_where():
-    drawn = set(re.findall(r"^sp\.report\.plot\(\s*sp\.report\.(\w+)", "\n".join(python_of(GALLERY)), flags=re.MULTILINE))
+    drawn = set(
+        re.findall(r"^sp\.report\.plot\(\s*sp\.report\.(\w+)", "\n".join(python_of(GALLERY)), flags=re.MULTILINE)
+    )
     elsewhere = set(re.findall(r"`(\w+_chart)`", PAGES[GALLERY].partition("## Drawn elsewhere")[2]))
     assert drawn | elsewhere == CHARTS
     assert not drawn & elsewhere
