@@ -47,16 +47,8 @@ class Sister:
 def sister_of(name: str, history: History, *, newest: int = NEWEST_TESTS) -> Sister:
     """Return a ship with its newest tests, none of which was made before the last thing that was done to it.
 
-    Where no test was made since, the newest one stands for it.
-
-    Parameters
-    ----------
-    name
-        What it is called.
-    history
-        Its tests, and what was done to it.
-    newest
-        How many tests stand for it at most.
+    Where no test was made since, the newest one stands for it. ``name``: what it is called. ``history``: its tests, and
+    what was done to it. ``newest``: how many tests stand for it at most.
     """
     last = max((event.at for event in history.events), default=None)
     since = tuple(test for test in history.tests if last is None or test.at >= last)

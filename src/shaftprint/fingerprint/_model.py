@@ -84,12 +84,8 @@ def named_structure(fingerprint: Fingerprint) -> Structure:
     """Return the structure that a fingerprint names, which is a shipped one.
 
     The name is text out of a file that anybody may have written: it is looked up, and never a path to code. A structure
-    of the user's own comes from the user, by the command line or the call.
-
-    Raises
-    ------
-    FingerprintError
-        If it is none of the shipped ones.
+    of the user's own comes from the user, by the command line or the call. Raises FingerprintError if it is none of the
+    shipped ones.
     """
     try:
         return shipped_structure(fingerprint.structure, {one.name for one in fingerprint.parameters})

@@ -9,17 +9,7 @@ from shaftprint.errors import ExportError
 def library(name: str, verb: str) -> Any:
     """Return an optional package, which has an extra of its name.
 
-    Parameters
-    ----------
-    name
-        The package.
-    verb
-        What needs it.
-
-    Raises
-    ------
-    ExportError
-        If it is not installed.
+    ``name``: the package. ``verb``: what needs it. Raises ExportError if it is not installed.
     """
     try:
         return importlib.import_module(name)

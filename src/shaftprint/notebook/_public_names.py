@@ -13,12 +13,7 @@ OF_THE_PROGRAM = "cli"
 def closest_names(name: str) -> tuple[str, ...]:
     """Return where the public names are that are most like another, such as ``sp.fingerprint.read_fingerprint``.
 
-    All rooms together take seconds to load, so their files are read instead.
-
-    Parameters
-    ----------
-    name
-        What somebody looked for.
+    All rooms together take seconds to load, so their files are read instead. ``name``: what somebody looked for.
     """
     rooms: dict[str, str] = {"open_survey": "sp", "read": "sp"}
     for room, public in _public_names():

@@ -18,15 +18,7 @@ class LevelWatch:
     def levels(self, reach: Callable[[float], None] | None = None) -> dict[str, Levels]:
         """Return the levels of every channel by its name; what nobody has read is read now.
 
-        Parameters
-        ----------
-        reach
-            Is told the share that is done, 0 to 1.
-
-        Raises
-        ------
-        RecordingError
-            If the file cannot be read.
+        ``reach``: is told the share that is done, 0 to 1. Raises RecordingError if the file cannot be read.
         """
         read_on(list(self._tallies.values()), reach=reach)
         return {name: tally.levels() for name, tally in self._tallies.items()}

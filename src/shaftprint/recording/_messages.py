@@ -70,15 +70,8 @@ class Messages:
 def judge_messages(channel: Channel) -> Messages:
     """Return what the times and values of a channel tell of their sender; samples that are no numbers do not count.
 
-    Parameters
-    ----------
-    channel
-        A channel with ``stamps``; of more than four million messages the first four are judged.
-
-    Raises
-    ------
-    RecordingError
-        If the file cannot be read.
+    ``channel``: a channel with ``stamps``; of more than four million messages the first four are judged. Raises
+    RecordingError if the file cannot be read.
     """
     time_s, values = stamped_values(channel, count=min(channel.count, _MOST_JUDGED))
     return messages_of(time_s, values, period_s=1.0 / channel.rate_hz)

@@ -20,12 +20,8 @@ def expected_of_ship(structure: Structure, vessel: Vessel) -> dict[str, float]:
     Underway the exponent of the resistance, and the time of the ship by its mass, speed and resistance; slopes of
     thrust and torque by the curves of the propeller at the wake fraction, where the file states one and a series that
     is known. At the quay with a controllable pitch its lag and delay, the slope of its combinator, and the slope of the
-    torque that its series has, where the file does not state it.
-
-    Raises
-    ------
-    StructureError
-        If the propeller of a ship underway does not pull at its working point.
+    torque that its series has, where the file does not state it. Raises StructureError if the propeller of a ship
+    underway does not pull at its working point.
     """
     return _sailing(structure, vessel) if vessel.is_underway else _pitched(structure, vessel)
 

@@ -48,16 +48,8 @@ def legs_alone(
 ) -> tuple[LegAlone, ...]:
     """Return a fit of each leg alone where one model does not explain all; empty where it does.
 
-    Parameters
-    ----------
-    joint
-        The fit to all legs.
-    measurement
-        What it was made from.
-    settings
-        How structures are fitted, by name.
-    rng
-        For the starts; each fit begins with its state.
+    ``joint``: the fit to all legs. ``measurement``: what it was made from. ``settings``: how structures are fitted, by
+    name. ``rng``: for the starts; each fit begins with its state.
     """
     points, p_value = measurement.working_points, joint.p_value
     if len(points) < 2 or len(joint.parts) != len(points) or p_value is None:

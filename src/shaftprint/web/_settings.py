@@ -100,10 +100,7 @@ class Serving:
 def listen_at(text: str) -> Listen:
     """Return host and port of a text such as ``0.0.0.0:8443`` or ``[::1]:8080``.
 
-    Raises
-    ------
-    ServerError
-        If it is no such text.
+    Raises ServerError if it is no such text.
     """
     host, mark, port = text.rpartition(":")
     host = host.removeprefix("[").removesuffix("]")

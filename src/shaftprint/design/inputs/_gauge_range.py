@@ -45,12 +45,7 @@ class GaugeRange(Shown):
     def shaft_torque_nm(self, brake_torque_nm: float, speed_share: _Speed) -> _Speed:
         """Return the shaft torque of a load at other speeds, with whose square it goes [N m], shape of ``speed_share``.
 
-        Parameters
-        ----------
-        brake_torque_nm
-            Brake torque of the load [N m] at a speed of 1.
-        speed_share
-            Speed, over that one.
+        ``brake_torque_nm``: brake torque of the load [N m] at a speed of 1. ``speed_share``: speed, over that one.
         """
         return self.shaft_over_brake * speed_share**2 * brake_torque_nm
 

@@ -35,19 +35,10 @@ def bulk_of(values: FloatArray, half: FloatArray, used: BoolArray, expected: Flo
     """Return which points set the range of an axis: those that are well known, but for few stray ones.
 
     Points that are not well known do where they are near what is expected, and all do where no other is left.
-
-    Parameters
-    ----------
-    values
-        Values of the points, shape (lines,).
-    half
-        Half lengths of their intervals, shape (lines,).
-    used
-        Which lines are used, shape (lines,).
-    expected
-        What each model, or the lines beside, let expect there, shape (expectations, lines).
-    far
-        How far from all that is expected a point is stray, and beyond which half length it is not well known.
+    ``values``: values of the points, shape (lines,). ``half``: half lengths of their intervals, shape (lines,).
+    ``used``: which lines are used, shape (lines,). ``expected``: what each model, or the lines beside, let expect
+    there, shape (expectations, lines). ``far``: how far from all that is expected a point is stray, and beyond which
+    half length it is not well known.
     """
     known = used & (half < far)
     is_far = np.abs(values - expected).min(axis=0) > far

@@ -56,10 +56,8 @@ class Database:
     def writing(self, *, alone: bool = True) -> Iterator[sa.Connection]:
         """Give the one connection that writes; what it wrote is on the disk when the block has ended, or not there.
 
-        Parameters
-        ----------
-        alone
-            Whether other writers wait. In PostgreSQL those do not need to that lock single rows; SQLite has one anyway.
+        ``alone``: whether other writers wait. In PostgreSQL those do not need to that lock single rows; SQLite has one
+        anyway.
         """
         with refusals_in_words(self.location, busy_s=self.busy_s), self.engine.connect() as connection:
             connection = connection.execution_options(**{_BEGIN: "BEGIN IMMEDIATE"})
@@ -109,21 +107,9 @@ class Database:
 def connect(location: Location, *, create: bool = False, busy_s: float = 30.0, mounts: str | None = None) -> Database:
     """Return the database at a place; whether it holds a store is not looked at.
 
-    Parameters
-    ----------
-    location
-        Where it is.
-    create
-        Whether a file that is not there is made.
-    busy_s
-        How long another writer is waited for [s].
-    mounts
-        Table of mounts, see ``network_file_system``.
-
-    Raises
-    ------
-    StoreError
-        If it is a file on a network file system, or no file is there.
+    ``location``: where it is. ``create``: whether a file that is not there is made. ``busy_s``: how long another writer
+    is waited for [s]. ``mounts``: table of mounts, see ``network_file_system``. Raises StoreError if it is a file on a
+    network file system, or no file is there.
     """
     if location.path is None:
         return Database(location=location, engine=_server(location), busy_s=busy_s)

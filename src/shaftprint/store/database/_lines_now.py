@@ -12,12 +12,7 @@ from shaftprint.store.database._tables import EVENT, FINGERPRINT, LINE, SHIP, TR
 def line_states(connection: sa.Connection, lines: Collection[int] | None = None) -> dict[int, str]:
     """Return a word for each line that has tests or events, which changes with every fingerprint and event put in.
 
-    Parameters
-    ----------
-    connection
-        A connection that reads.
-    lines
-        Numbers of the lines that are wanted; all where none are given.
+    ``connection``: a connection that reads. ``lines``: numbers of the lines that are wanted; all where none are given.
     """
     # rows are numbered in their order and never deleted: the last one and how many there are tell all
     tests = (

@@ -37,10 +37,7 @@ class Location:
 def location_of(text: str) -> Location:
     """Return the place that a text names: the path of a file, or a URL.
 
-    Raises
-    ------
-    StoreError
-        If it is neither.
+    Raises StoreError if it is neither.
     """
     scheme, mark, rest = text.partition("://")
     if not mark:

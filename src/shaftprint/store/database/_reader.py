@@ -69,12 +69,7 @@ class Reader:
     def fingerprints(self, lines: Mapping[int, Line], *, superseded: bool) -> dict[int, StoredFingerprint]:
         """Return the fingerprints of lines by their number here, in the order of time.
 
-        Parameters
-        ----------
-        lines
-            The lines.
-        superseded
-            Whether those come too whose place another one has taken.
+        ``lines``: the lines. ``superseded``: whether those come too whose place another one has taken.
         """
         query = (
             sa.select(
@@ -100,14 +95,8 @@ class Reader:
     ) -> list[HistoryEntry]:
         """Return the tests of lines with their numbers, in the order of time.
 
-        Parameters
-        ----------
-        lines
-            The lines.
-        number
-            Name of the number that is wanted; None for all.
-        superseded
-            Whether those come too whose place another one has taken.
+        ``lines``: the lines. ``number``: name of the number that is wanted; None for all. ``superseded``: whether those
+        come too whose place another one has taken.
         """
         found = self.fingerprints(lines, superseded=superseded)
         quantities = self._quantities(number)

@@ -20,10 +20,7 @@ _VERSION = sa.table(VERSION_TABLE, sa.column("version_num"))
 def create(database: Database) -> None:
     """Make the tables of a store, all or none.
 
-    Raises
-    ------
-    StoreError
-        If there is a store already, or tables of another program are in the way.
+    Raises StoreError if there is a store already, or tables of another program are in the way.
     """
     path = database.location.path
     is_new = path is not None and not path.exists()
@@ -46,10 +43,7 @@ def create(database: Database) -> None:
 def expect_current(database: Database) -> None:
     """Check that a database holds a store of the schema that this version of the program knows.
 
-    Raises
-    ------
-    StoreError
-        If it holds none, or one of an earlier or a later schema.
+    Raises StoreError if it holds none, or one of an earlier or a later schema.
     """
     with database.reading() as connection:
         version = _version(database, connection)

@@ -31,10 +31,7 @@ class Writer:
     def event(self, event: Event, line_id: int) -> bool:
         """Put in what was done to a line; return whether it was not there.
 
-        Raises
-        ------
-        StoreError
-            If the same was done at that time with another note or other numbers.
+        Raises StoreError if the same was done at that time with another note or other numbers.
         """
         numbers = json.dumps(event.numbers)
         same = sa.and_(EVENT.c.line_id == line_id, EVENT.c.at == event.at, EVENT.c.kind == event.kind)
@@ -58,10 +55,7 @@ class Writer:
     def withdraw(self, event: Event, line_id: int, *, why: str) -> bool:
         """Let an event count no more; return whether it did until now.
 
-        Raises
-        ------
-        StoreError
-            If there is none of that time and kind.
+        Raises StoreError if there is none of that time and kind.
         """
         same = sa.and_(EVENT.c.line_id == line_id, EVENT.c.at == event.at, EVENT.c.kind == event.kind)
         if self.connection.execute(sa.select(EVENT.c.id).where(same)).first() is None:
@@ -86,19 +80,9 @@ class Writer:
     ) -> list[Added]:
         """Put in fingerprints, and say of each what became of it.
 
-        Parameters
-        ----------
-        records
-            The fingerprints, with the ship of each and when each was added.
-        newest_names
-            Whether a ship takes name and class of its newest test.
-        only
-            The line to which they belong; None where each says it by itself.
-
-        Raises
-        ------
-        StoreError
-            If one belongs to another line than that.
+        ``records``: the fingerprints, with the ship of each and when each was added. ``newest_names``: whether a ship
+        takes name and class of its newest test. ``only``: the line to which they belong; None where each says it by
+        itself. Raises StoreError if one belongs to another line than that.
         """
         chains = Chains.of(self.connection, [record for record, _, _ in records])
         added_at: dict[str, datetime] = {}

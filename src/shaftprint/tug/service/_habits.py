@@ -67,16 +67,8 @@ class Habits:
 def lever_course(habits: Habits, tug: Tug, vessel: Vessel, *, hours: float, rng: np.random.Generator) -> LeverCourse:
     """Return where a crew puts the lever over some hours, and when it takes the clutch out.
 
-    Parameters
-    ----------
-    habits
-        What the crew is used to.
-    tug, vessel
-        The ship: the line of its lever, and its idle speed.
-    hours
-        Length [h].
-    rng
-        Source of what happens to be done.
+    ``habits``: what the crew is used to. ``tug, vessel``: the ship: the line of its lever, and its idle speed.
+    ``hours``: length [h]. ``rng``: source of what happens to be done.
     """
     in_proportion = vessel.machine.rated_speed_rpm / _RATED_RPM
     end_s, lowest = SECONDS_PER_HOUR * hours, in_proportion * habits.speeds_rpm[0]
