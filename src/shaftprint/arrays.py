@@ -1,5 +1,6 @@
-"""Names for array types, and read-only arrays for the values that rooms hand on."""
+"""Names for array types, read-only arrays for the values that rooms hand on, and parts of covariances."""
 
+from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -31,3 +32,18 @@ def frozen_bool(values: ArrayLike) -> BoolArray:
     array = np.asarray(values, dtype=np.bool_).view()
     array.flags.writeable = False
     return array
+
+
+def block_of(matrix: ArrayLike, order: Sequence[str], names: Sequence[str]) -> FloatArray:
+    """Return rows and columns of a square matrix by their names, shape (names, names).
+
+    ``order``: the names of all of them. Raises ValueError if it has not one of the names.
+    """
+    places = [order.index(name) for name in names]
+    return np.asarray(matrix, dtype=np.float64).reshape(len(order), len(order))[np.ix_(places, places)]
+
+
+def known_part(covariance: FloatArray) -> FloatArray:
+    """Return a covariance with zeros for all of which nothing is known, those of infinite variance."""
+    lost = ~np.isfinite(np.diag(covariance))
+    return np.where(lost[:, None] | lost[None, :], 0.0, covariance)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from shaftprint.arguments import refusing_none
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import FloatArray, block_of, frozen_float
 from shaftprint.errors import ExportError
 from shaftprint.export._fmu_signals import DEVIATION, FmuSignal, fmu_signal
 from shaftprint.fingerprint._fingerprint import Fingerprint
@@ -126,9 +126,7 @@ def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None, lin
     else:
         model, quantities = model_with_limits(line), line.parameters
     std = {quantity.name: quantity.std for quantity in quantities}
-    names = [parameter.name for parameter in model.structure.free]
     uncertain = tuple(name for name in std if np.isfinite(std[name]) and std[name] > 0.0)
-    places = [names.index(name) for name in uncertain]
     return ExportedModel(
         title=fingerprint.conditions.vessel,
         structure=model.structure,
@@ -137,7 +135,7 @@ def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None, lin
         shaft_torque_nm=fingerprint.conditions.shaft_torque.value,
         uncertain=uncertain,
         intervals={q.name: q.interval_95 for q in quantities if q.interval_95 and q.stated_std is None},
-        covariance=frozen_float(model.covariance[np.ix_(places, places)]),
+        covariance=frozen_float(block_of(model.covariance, [p.name for p in model.structure.free], uncertain)),
         not_known=model.not_known,
         remark=validation_remark(fingerprint, model.structure.name),
     )

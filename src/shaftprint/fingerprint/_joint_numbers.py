@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, block_of
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_numbers
 from shaftprint.fingerprint._working_point_share import GAIN
@@ -56,9 +56,7 @@ class JointNumbers(Record):
 
     def covariance_of(self, names: tuple[str, ...]) -> FloatArray:
         """Return the own covariance of some of the numbers, shape (names, names)."""
-        places = [self.names.index(name) for name in names]
-        size = len(self.names)
-        return np.array(self.own_covariance, dtype=np.float64).reshape(size, size)[np.ix_(places, places)]
+        return block_of(self.own_covariance, self.names, names)
 
     def loadings_of(self, names: tuple[str, ...]) -> dict[str, FloatArray]:
         """Return the change of some of the numbers by source, shape (names,) each."""

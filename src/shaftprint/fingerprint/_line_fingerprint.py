@@ -10,10 +10,9 @@ from dataclasses import replace
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
-import numpy as np
 from pydantic import AwareDatetime, model_validator
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, block_of
 from shaftprint.errors import FingerprintError, NoSuchNumberError
 from shaftprint.fingerprint._conditions import Tested
 from shaftprint.fingerprint._covariance_check import covariance_fault
@@ -197,5 +196,4 @@ class LineFingerprint(Shown, Record):
         foreign = [name for name in names if name not in order]
         if foreign:
             raise FingerprintError(f"the fingerprint has no parameter {foreign[0]!r}; it has {', '.join(order)}.")
-        places = [order.index(name) for name in names]
-        return np.array(self.covariance).reshape(len(order), len(order))[np.ix_(places, places)]
+        return block_of(self.covariance, order, names)

@@ -4,11 +4,13 @@ It stands beside the numbers of the linear fit and repeats their values, so that
 fit gives all of them other values.
 """
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated, Final, Literal, Self, TypeAlias
 
 from pydantic import Field, FiniteFloat, model_validator
 
+from shaftprint.arrays import FloatArray, block_of
 from shaftprint.catalogue._limited import limited
 from shaftprint.errors import StructureError
 from shaftprint.fingerprint._covariance_check import covariance_fault
@@ -44,6 +46,10 @@ class LineWithLimits(Record):
     """The others."""
     covariance: tuple[tuple[float, ...], ...]
     """Covariance of the identified parameters, in their order."""
+
+    def covariance_of(self, names: Sequence[str]) -> FloatArray:
+        """Return the covariance of some of the identified parameters, shape (names, names)."""
+        return block_of(self.covariance, [quantity.name for quantity in self.parameters], names)
 
     @model_validator(mode="after")
     def _expect_a_model(self) -> Self:

@@ -13,6 +13,7 @@ from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.errors import FingerprintError, StructureError
 from shaftprint.escape import printable
 from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 from shaftprint.fingerprint._line_with_limits import LineWithLimits
 from shaftprint.models._structure import Structure
 
@@ -44,39 +45,32 @@ def identified_model(fingerprint: Fingerprint, structure: Structure) -> Identifi
     ``fingerprint``: a saved fingerprint. ``structure``: the structure that it names. Raises FingerprintError if the
     structure has other parameters than the fingerprint.
     """
-    estimates = {quantity.name: quantity.value for quantity in fingerprint.parameters}
-    named = estimates | fingerprint.held
     if any(quantity.role == ShipRole.SET_POINT_BEND for quantity in fingerprint.parameters):
         # what a test at several speeds adds to any structure
         structure = with_bend(structure)
-    apart = sorted(set(structure.names) ^ set(named))
+    apart = sorted(set(structure.names) ^ {*fingerprint.held, *(one.name for one in fingerprint.parameters)})
     if apart:
         raise FingerprintError(
             f"fingerprint of {fingerprint.structure}: expected the parameters of structure {structure.name}, found a "
             f"difference in {', '.join(apart)}; name the structure that it was identified with."
         )
-    bounds = {p.name: (p.lower, p.upper) for p in structure.parameters if p.name in estimates}
-    identified = structure.held_at(**fingerprint.held).free_between(**bounds)
-    return IdentifiedModel(
-        structure=identified,
-        values=frozen_float([named[name] for name in identified.names]),
-        covariance=frozen_float(fingerprint.covariance_of([parameter.name for parameter in identified.free])),
-    )
+    return _identified(fingerprint, structure)
 
 
 def model_with_limits(line: LineWithLimits) -> IdentifiedModel:
     """Return the model of a line with its limits."""
-    estimates = {quantity.name: quantity.value for quantity in line.parameters}
-    named = estimates | line.held
-    structure = limited(*line.limits, curve=line.curve)
+    return _identified(line, limited(*line.limits, curve=line.curve))
+
+
+def _identified(source: LineFingerprint | LineWithLimits, structure: Structure) -> IdentifiedModel:
+    """Return a structure as it was identified, of the parameters that the source has."""
+    estimates = {quantity.name: quantity.value for quantity in source.parameters}
     bounds = {p.name: (p.lower, p.upper) for p in structure.parameters if p.name in estimates}
-    identified = structure.held_at(**line.held).free_between(**bounds)
-    order = [quantity.name for quantity in line.parameters]
-    places = [order.index(parameter.name) for parameter in identified.free]
+    identified = structure.held_at(**source.held).free_between(**bounds)
     return IdentifiedModel(
         structure=identified,
-        values=frozen_float([named[name] for name in identified.names]),
-        covariance=frozen_float(np.array(line.covariance).reshape(len(order), len(order))[np.ix_(places, places)]),
+        values=frozen_float(identified.vector(estimates | source.held)),
+        covariance=frozen_float(source.covariance_of([parameter.name for parameter in identified.free])),
     )
 
 

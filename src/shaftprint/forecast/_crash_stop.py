@@ -178,17 +178,12 @@ def _covariance(
 ) -> tuple[tuple[str, ...], FloatArray]:
     """Return which parameters have a deviation, and their covariance: the fingerprint's, then the vessel file's."""
     tested = () if fingerprint is None else fingerprint.parameters
-    places = [
-        place
-        for place, q in enumerate(tested)
-        if origins.get(q.name) == "fingerprint" and np.isfinite(q.std) and q.std > 0.0
-    ]
+    known = [q.name for q in tested if origins.get(q.name) == "fingerprint" and np.isfinite(q.std) and q.std > 0.0]
     stated = [name for name, number in ship.stated.items() if origins[name] == "vessel file" and number.std > 0.0]
-    covariance = np.diag([0.0] * len(places) + [ship.stated[name].std ** 2 for name in stated])
+    covariance = np.diag([0.0] * len(known) + [ship.stated[name].std ** 2 for name in stated])
     if fingerprint is not None:
-        whole = np.array(fingerprint.covariance).reshape(len(tested), len(tested))
-        covariance[: len(places), : len(places)] = whole[np.ix_(places, places)]
-    return (*(tested[place].name for place in places), *stated), frozen_float(covariance)
+        covariance[: len(known), : len(known)] = fingerprint.covariance_of(known)
+    return (*known, *stated), frozen_float(covariance)
 
 
 def _lever_inputs(

@@ -1,6 +1,6 @@
 """The model that ``simulate`` takes through time: from a fingerprint, by name, or from the user's own file."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,8 +9,8 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.errors import FingerprintError, RequestError, StructureError
 from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._line_with_limits import LineWithLimits
 from shaftprint.fingerprint._model import model_with_limits, structure_to_use
-from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.models._structure import Structure
 from shaftprint.spelling import meant
 
@@ -31,21 +31,6 @@ class SimulatedModel:
     """Their covariance, shape (uncertain, uncertain)."""
     not_known: tuple[str, ...]
     """Parameters of which the test said nothing: no band holds them."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Identified:
-    """What was identified, of the line for small signals or of that with its limits."""
-
-    name: str
-    parameters: tuple[Estimate, ...]
-    held: Mapping[str, float]
-    covariance: FloatArray
-
-    def covariance_of(self, names: Sequence[str]) -> FloatArray:
-        order = [quantity.name for quantity in self.parameters]
-        places = [order.index(name) for name in names]
-        return self.covariance.reshape(len(order), len(order))[np.ix_(places, places)]
 
 
 def simulated_model(
@@ -71,14 +56,7 @@ def simulated_model(
     expect_parameters(chosen, given)
     if fingerprint is None:
         return _by_name(chosen, given)
-    source = line or fingerprint
-    identified = _Identified(
-        name=fingerprint.structure,
-        parameters=source.parameters,
-        held=source.held,
-        covariance=np.array(source.covariance),
-    )
-    return _of_fingerprint(chosen, identified, given)
+    return _of_fingerprint(chosen, line or fingerprint, fingerprint.structure, given)
 
 
 def expect_parameters(chosen: Structure, given: Mapping[str, float]) -> None:
@@ -105,13 +83,16 @@ def _by_name(chosen: Structure, given: Mapping[str, float]) -> SimulatedModel:
     )
 
 
-def _of_fingerprint(chosen: Structure, fingerprint: _Identified, given: Mapping[str, float]) -> SimulatedModel:
-    identified = {quantity.name: quantity.value for quantity in fingerprint.parameters}
-    values = identified | dict(fingerprint.held)
+def _of_fingerprint(
+    chosen: Structure, source: Fingerprint | LineWithLimits, name: str, given: Mapping[str, float]
+) -> SimulatedModel:
+    """Return the model of a fingerprint, or of its line with limits; ``name``: the structure of the fingerprint."""
+    identified = {quantity.name: quantity.value for quantity in source.parameters}
+    values = identified | source.held
     foreign = [name for name in values if name not in chosen.names]
     if foreign:
         raise FingerprintError(
-            f"fingerprint of {fingerprint.name}: expected the parameters of structure {chosen.name}, found "
+            f"fingerprint of {name}: expected the parameters of structure {chosen.name}, found "
             f"{', '.join(foreign)} too; name the structure that it was identified with, or one that has all of them."
         )
     missing = [p for p in chosen.parameters if not p.held and p.name not in values and p.name not in given]
@@ -119,12 +100,12 @@ def _of_fingerprint(chosen: Structure, fingerprint: _Identified, given: Mapping[
         usual = " ".join(f"--set {p.name}={p.value:g}" for p in missing)
         raise StructureError(
             f"structure {chosen.name}: expected values of {', '.join(p.name for p in missing)}, which the fingerprint "
-            f"of {fingerprint.name} does not have; give them, usual ones are {usual}."
+            f"of {name} does not have; give them, usual ones are {usual}."
         )
-    std = {quantity.name: quantity.std for quantity in fingerprint.parameters}
+    std = {quantity.name: quantity.std for quantity in source.parameters}
     free = [name for name in identified if name not in given]
     uncertain = [name for name in free if np.isfinite(std[name]) and std[name] > 0.0]
-    fixed = {name: value for name, value in (dict(fingerprint.held) | dict(given)).items() if name in chosen.names}
+    fixed = {name: value for name, value in (source.held | dict(given)).items() if name in chosen.names}
     origins = dict.fromkeys(chosen.names, "usual value") | dict.fromkeys(values, "fingerprint")
     origins |= dict.fromkeys(given, "--set")
     return SimulatedModel(
@@ -132,6 +113,6 @@ def _of_fingerprint(chosen: Structure, fingerprint: _Identified, given: Mapping[
         values=frozen_float(chosen.vector(values | dict(given))),
         origins=tuple(origins[name] for name in chosen.names),
         uncertain=tuple(uncertain),
-        covariance=frozen_float(fingerprint.covariance_of(uncertain)),
+        covariance=frozen_float(source.covariance_of(uncertain)),
         not_known=tuple(name for name in free if not np.isfinite(std[name])),
     )

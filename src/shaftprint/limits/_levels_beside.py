@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import FloatArray, block_of, frozen_float
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.catalogue._limited_governor import GovernorSymbol
 from shaftprint.errors import IdentificationError
@@ -105,14 +105,13 @@ def levels_beside(
     there, identification = identified(here)
     spread = spread_of(there, test, signals, vessel)
     names = parameters_of(there.kinds)
-    order = [estimate.name for estimate in identification.parameters]
-    places = [order.index(name) for name in names]
+    found, order = spread.covariance(identification.covariance), [one.name for one in identification.parameters]
     bounds = {p.name: (p.lower, p.upper) for p in whole.parameters}
     return Levels(
         kinds=there.kinds,
         values={name: float(np.clip(there.values[name], *bounds[name])) for name in IDLE},
         names=names,
-        covariance=frozen_float(spread.covariance(identification.covariance)[np.ix_(places, places)]),
+        covariance=frozen_float(block_of(found, order, names)),
         governor=held,
         slopes=_slopes(there, names, held),
     )

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, block_of
 from shaftprint.catalogue._limited import limited
 from shaftprint.distributions import chi_square_tail
 from shaftprint.fingerprint._fingerprint import Fingerprint
@@ -124,9 +124,7 @@ def _quantity(before: Estimate, value: float, variance: float, *, at_bound: bool
 
 def _of(fit: Identification, names: list[str]) -> FloatArray:
     """Return the covariance of some parameters of a fit, shape (names, names)."""
-    order = [estimate.name for estimate in fit.parameters]
-    places = [order.index(name) for name in names]
-    return np.asarray(fit.covariance[np.ix_(places, places)])
+    return block_of(fit.covariance, [estimate.name for estimate in fit.parameters], names)
 
 
 def _finite(covariance: FloatArray) -> FloatArray:

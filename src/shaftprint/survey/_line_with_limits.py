@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, block_of, known_part
 from shaftprint.catalogue._limited import limited
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._fingerprint import Fingerprint
@@ -105,12 +105,10 @@ def _joint(fingerprint: Fingerprint, levels: "Levels", names: Sequence[str]) -> 
     for column, name in enumerate(levels.governor):
         if name in linear and known[linear.index(name)]:
             slopes[:, linear.index(name)] = levels.slopes[places, column]
-    finite = np.where(known[:, None] & known[None, :], of_line, 0.0)
-    own = levels.covariance[np.ix_(places, places)]
+    own = block_of(levels.covariance, levels.names, names)
     lost = ~np.isfinite(np.diag(own))
     # of what the data do not show nothing is related to anything
     slopes[lost] = 0.0
-    across = slopes @ finite
-    own = np.where(lost[:, None] | lost[None, :], 0.0, own)
-    both = own + across @ slopes.T + np.diag(np.where(lost, np.inf, 0.0))
+    across = slopes @ known_part(of_line)
+    both = known_part(own) + across @ slopes.T + np.diag(np.where(lost, np.inf, 0.0))
     return np.block([[of_line, across.T], [across, both]])

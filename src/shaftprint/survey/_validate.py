@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import frozen_float
+from shaftprint.arrays import frozen_float, known_part
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._model import identified_model, named_structure
@@ -128,12 +128,11 @@ def fingerprint_model(fingerprint: Fingerprint, structure: Structure, signals: S
     """
     model = identified_model(fingerprint, structure)
     _expect_working_point(fingerprint, signals)
-    lost = ~np.isfinite(np.diag(model.covariance))
     return Model(
         name=fingerprint.structure,
         structure=model.structure,
         values=model.values,
-        covariance=frozen_float(np.where(lost[:, None] | lost[None, :], 0.0, model.covariance)),
+        covariance=frozen_float(known_part(model.covariance)),
         used=fingerprint.conditions.lines_used if _is_of(fingerprint, signals) else (),
         not_known=model.not_known,
     )

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import frozen_float
+from shaftprint.arrays import frozen_float, known_part
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._excitations import Chirp, Staircase
 from shaftprint.errors import FingerprintError, ValidationError
@@ -49,12 +49,11 @@ BEFORE_S = 1.0
 def limited_model(line: LineWithLimits) -> "Model":
     """Return the model of a line with its limits, for a validation."""
     model = model_with_limits(line)
-    lost = ~np.isfinite(np.diag(model.covariance))
     return Model(
         name=model.structure.name,
         structure=model.structure,
         values=model.values,
-        covariance=frozen_float(np.where(lost[:, None] | lost[None, :], 0.0, model.covariance)),
+        covariance=frozen_float(known_part(model.covariance)),
         not_known=model.not_known,
     )
 

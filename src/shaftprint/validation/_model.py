@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import FloatArray, block_of, frozen_float, known_part
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.likelihood._fitted_response import FittedResponse
 from shaftprint.models._structure import Structure
@@ -58,16 +58,16 @@ def identified_model(identification: Identification, *, used: Collection[str] = 
     """
     structure = identification.structure
     names = [estimate.name for estimate in identification.parameters]
-    columns = [names.index(parameter.name) for parameter in structure.free]
-    covariance = identification.covariance[np.ix_(columns, columns)]
-    lost = ~np.isfinite(np.diag(covariance))
+    covariance = block_of(identification.covariance, names, [parameter.name for parameter in structure.free])
     return Model(
         name=structure.name,
         structure=structure,
         values=identification.structure_values(),
-        covariance=frozen_float(np.where(lost[:, None] | lost[None, :], 0.0, covariance)),
+        covariance=frozen_float(known_part(covariance)),
         used=tuple(dict.fromkeys([*_seen(identification), *used])),
-        not_known=tuple(p.name for p, gone in zip(structure.free, lost, strict=True) if gone),
+        not_known=tuple(
+            p.name for p, variance in zip(structure.free, np.diag(covariance), strict=True) if not np.isfinite(variance)
+        ),
     )
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray, frozen_float
+from shaftprint.arrays import BoolArray, FloatArray, frozen_float, known_part
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.design.inputs._assumed_ship import GAINS, RELATIVE_SPREAD, AssumedShip, assumed_ship
 from shaftprint.distributions import NORMAL_95
@@ -171,7 +171,5 @@ def limits_of_fingerprint(limits: "Limits", fingerprint: "Fingerprint", vessel: 
 
 def _finite(covariance: FloatArray, usual: FloatArray) -> FloatArray:
     """Return a covariance in which what is not known has its usual variance and no correlation."""
-    variance = np.diag(covariance)
-    lost = ~np.isfinite(variance)
-    known = np.where(lost[:, None] | lost[None, :], 0.0, covariance)
-    return np.asarray(known + np.diag(np.where(lost, usual, 0.0)))
+    is_known = np.isfinite(np.diag(covariance))
+    return np.asarray(known_part(covariance) + np.diag(np.where(is_known, 0.0, usual)))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, known_part
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._covariance import known_covariance
 from shaftprint.identify.fit._identification import Identification
@@ -31,11 +31,14 @@ class ParameterSpread:
     def of_covariance(cls, structure: Structure, values: FloatArray, covariance: FloatArray) -> "ParameterSpread":
         """Return the spread that a covariance describes; nothing is known of a parameter of infinite variance."""
         lost = ~np.isfinite(np.diag(covariance))
-        inner = np.where(lost[:, None] | lost[None, :], 0.0, covariance)
         size = np.sqrt(np.where(lost, 1.0, np.diag(covariance)))
         scale = 1.0 / np.where(size > 0.0, size, 1.0)
         return cls(
-            structure=structure, values=values, covariance=inner, unknown=np.eye(lost.size)[:, lost], scale=scale
+            structure=structure,
+            values=values,
+            covariance=known_part(covariance),
+            unknown=np.eye(lost.size)[:, lost],
+            scale=scale,
         )
 
     def deviation(self, slopes: FloatArray) -> FloatArray:
