@@ -1,5 +1,7 @@
 """A step of the fit to segments: as far as the curvature of one point is a guide."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -39,3 +41,32 @@ def test_what_stands_at_its_bound_stays_there_and_no_other_number_makes_up_for_i
     assert np.all(sums.step_from(theta) == 0.0)
     theta[delay] = 0.1
     assert sums.step_from(theta) == pytest.approx(sums.step)
+
+
+def test_segments_that_meet_a_limit_at_the_start_only_have_no_score_there_and_one_at_the_end(monkeypatch):
+    """Where a segment came back, the scores at the start stood beside other segments."""
+    start = np.array([HERE[name] for name in FREE])
+    target = 1.1 * start
+
+    def simulated(records, model, theta):
+        return [SimpleNamespace(record=one, theta=theta, meets_limit=one == 3 and theta is start) for one in records]
+
+    def scores(runs, whitening):
+        size = np.diag(np.abs(100.0 / start) ** 2)
+        return [
+            _fit.Score(slope=size @ (target - one.theta), information=size, count=1, level=1.0, meets_limit=False)
+            for one in runs
+        ]
+
+    monkeypatch.setattr(_fit, "simulated", simulated)
+    monkeypatch.setattr(_fit, "scores", scores)
+    monkeypatch.setattr(_fit, "noise_of", lambda runs: None)
+    monkeypatch.setattr(_fit, "misfit_of", lambda *_: SimpleNamespace(spread=0.0))
+    monkeypatch.setattr(_fit, "clustered", lambda each, sums, of_noise: (of_noise, np.ones(len(FREE))))
+    model = SimpleNamespace(theta=start, theta_known=start, prior_std={})
+    fit = _fit.fit_segments(list(range(20)), model)
+    assert np.flatnonzero(~fit.counts_at_start).tolist() == [3]
+    assert len(fit.at_start) == 19
+    assert fit.counts.all()
+    assert len(fit.scores) == 20
+    assert fit.theta == pytest.approx(target)

@@ -14,6 +14,7 @@ errors in many hours of simulated service however long they were.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Self
 
 import numpy as np
 
@@ -167,12 +168,86 @@ def sums_of(each: Sequence[Score], model: ServiceModel, theta: FloatArray) -> Su
     )
 
 
-def fit_segments(
-    records: Sequence[Record],
-    model: ServiceModel,
-    *,
-    progress: Progress | None = None,
-) -> ServiceFit:
+@dataclass(slots=True, eq=False)
+class _Course:
+    """Where the steps of a fit have come to."""
+
+    records: Sequence[Record]
+    model: ServiceModel
+    theta: FloatArray
+    counts: BoolArray
+    """Which segments count, shape (segments,)."""
+    runs: list[Simulated]
+    """Those that do, simulated at the parameters."""
+    whitening: Whitening
+    each: list[Score]
+    """What each of them tells."""
+    steps: int = 0
+    size: float = np.inf
+    """Size of the last step, over the standard deviation in its direction."""
+    is_last: bool = False
+
+    @classmethod
+    def begun(cls, records: Sequence[Record], model: ServiceModel) -> Self:
+        counts = np.ones(len(records), dtype=np.bool_)
+        runs = _beside_limits(simulated(records, model, model.theta), counts)
+        whitening = noise_of(runs)
+        return cls(records, model, model.theta, counts, runs, whitening, scores(runs, whitening))
+
+    def go_on_from(self, reached: Reached) -> None:
+        """Go on where an earlier run was."""
+        self.theta, self.steps, self.size, self.is_last = reached.theta, reached.steps, reached.size, reached.is_last
+        self.counts, self.whitening = reached.counts.copy(), Whitening(noise=reached.noise)
+        kept = [record for record, does in zip(self.records, self.counts, strict=True) if does]
+        self.runs = simulated(kept, self.model, self.theta)
+        self.each = scores(self.runs, self.whitening)
+
+    @property
+    def reached(self) -> Reached:
+        """What a later run goes on from."""
+        return Reached(
+            theta=self.theta, counts=self.counts, noise=self.whitening.noise, steps=self.steps, size=self.size,
+            is_last=self.is_last,
+        )  # fmt: skip
+
+    def takes_a_step(self) -> bool:
+        """Take a step, and return whether there was one to take.
+
+        Raises ServiceError if the steps do not end, or none comes nearer to the segments.
+        """
+        if self.steps == _MOST_STEPS:
+            if self.size <= _SHORT:
+                return False
+            raise ServiceError(
+                f"service: expected a fit that comes to rest within {_MOST_STEPS} steps, found one whose last step was "
+                f"{self.size:.2g} standard deviations long; {_OTHER_LINE}"
+            )
+        before, sums = self.size, sums_of(self.each, self.model, self.theta)
+        step = sums.step_from(self.theta)
+        self.steps, self.size = self.steps + 1, float(np.sqrt(step @ sums.information @ step))
+        # from afar the filter still holds what the start leaves, and its misfit is no guide
+        is_rough = self.steps <= _MOST_NOISES or self.size < _SHORT
+        found = _stepped(self.runs, self.each, sums, step, self.model, self.theta, self.whitening, guided=not is_rough)
+        if found is None:
+            if self.size < _ROUGH:
+                return False
+            raise ServiceError(
+                "service: expected a fit that comes nearer to the segments with each step, found none that does; "
+                + _OTHER_LINE
+            )
+        self.theta, self.runs, self.each = found
+        if any(one.meets_limit for one in self.runs):
+            self.runs = _beside_limits(self.runs, self.counts)
+            self.each = scores(self.runs, self.whitening)
+        self.is_last = self.size < _LAST or max(self.size, before) < _SHORT
+        if not self.is_last and self.size > _NOISE_ANEW and self.steps <= _MOST_NOISES:
+            self.runs = _with_those_back(self.runs, self.records, self.counts, self.model, self.theta)
+            self.whitening = noise_of(self.runs)
+            self.each = scores(self.runs, self.whitening)
+        return True
+
+
+def fit_segments(records: Sequence[Record], model: ServiceModel, *, progress: Progress | None = None) -> ServiceFit:
     """Return the parameters that explain segments best.
 
     ``records``: the segments. ``model``: the model, with the values to begin from.
@@ -184,71 +259,29 @@ def fit_segments(
             f"service: expected {FEWEST_SEGMENTS} or more moves of the lever that can be used, found {len(records)}; "
             "give more logs."
         )
-    counts = np.ones(len(records), dtype=np.bool_)
-    runs = _beside_limits(simulated(records, model, model.theta), counts)
-    whitening = noise_of(runs)
-    each = scores(runs, whitening)
-    at_start, counts_at_start = tuple(each), frozen_bool(counts)
-    theta, number, size, is_last = model.theta, 0, np.inf, False
+    course = _Course.begun(records, model)
+    at_start, counts_at_start = tuple(course.each), frozen_bool(course.counts.copy())
     reached = None if progress is None else progress.reached(len(records))
     if reached is not None:
-        theta, number, size, is_last = reached.theta, reached.steps, reached.size, reached.is_last
-        counts, whitening = reached.counts.copy(), Whitening(noise=reached.noise)
-        kept = [record for record, does in zip(records, counts, strict=True) if does]
-        runs = simulated(kept, model, theta)
-        each = scores(runs, whitening)
-    while not is_last:
-        if number == _MOST_STEPS:
-            if size <= _SHORT:
-                break
-            raise ServiceError(
-                f"service: expected a fit that comes to rest within {_MOST_STEPS} steps, found one whose last step was "
-                f"{size:.2g} standard deviations long; {_OTHER_LINE}"
-            )
-        number, before = number + 1, size
-        sums = sums_of(each, model, theta)
-        step = sums.step_from(theta)
-        size = float(np.sqrt(step @ sums.information @ step))
-        # from afar the filter still holds what the start leaves, and its misfit is no guide
-        is_rough = number <= _MOST_NOISES or size < _SHORT
-        found = _stepped(runs, each, sums, step, model, theta, whitening, guided=not is_rough)
-        if found is None:
-            if size < _ROUGH:
-                break
-            raise ServiceError(
-                "service: expected a fit that comes nearer to the segments with each step, found none that does; "
-                + _OTHER_LINE
-            )
-        theta, runs, each = found
-        if any(one.meets_limit for one in runs):
-            runs = _beside_limits(runs, counts)
-            each = scores(runs, whitening)
-        is_last = size < _LAST or max(size, before) < _SHORT
-        if not is_last and size > _NOISE_ANEW and number <= _MOST_NOISES:
-            runs = _with_those_back(runs, records, counts, model, theta)
-            whitening = noise_of(runs)
-            each = scores(runs, whitening)
+        course.go_on_from(reached)
+    while not course.is_last and course.takes_a_step():
         if progress is not None:
-            progress.keep(
-                Reached(
-                    theta=theta, counts=counts, noise=whitening.noise, steps=number, size=size, is_last=is_last
-                )
-            )  # fmt: skip
-    sums = sums_of(each, model, theta)
+            progress.keep(course.reached)
+    theta, sums = course.theta, sums_of(course.each, model, course.theta)
     of_noise: FloatArray = np.linalg.inv(sums.information).astype(np.float64)
-    covariance, freedom = clustered(each, sums, of_noise)
-    misfit = misfit_of(runs, whitening, model, theta, sums.prior)
+    covariance, freedom = clustered(course.each, sums, of_noise)
+    misfit = misfit_of(course.runs, course.whitening, model, theta, sums.prior)
     return ServiceFit(
         theta=frozen_float(theta),
         covariance=frozen_float(with_floor(covariance, theta) + misfit.spread),
         freedom=frozen_float(freedom),
         of_prior={name: frozen_float(of_noise[:, FREE.index(name)] / std) for name, std in model.prior_std.items()},
-        scores=tuple(each),
-        counts=frozen_bool(counts),
+        scores=tuple(course.each),
+        counts=frozen_bool(course.counts),
         at_start=at_start,
         counts_at_start=counts_at_start,
-        steps=number,
-        last_step=size,
+        steps=course.steps,
+        last_step=course.size,
         misfit=misfit,
     )
 
