@@ -6,9 +6,10 @@ outputs reach is simulated, and the input made smaller until all limits are kept
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
+from typing import TypeAlias
 
 import numpy as np
 
@@ -38,6 +39,8 @@ FACTOR, ROUNDS = 2.0, 2
 GAIN = 1e-3
 # Simulations with a smaller input before limits count as not to be kept.
 MOST_SHRINKS = 12
+# Score of an input, its samples, and the deviations of what it tells.
+_Tried: TypeAlias = tuple[float, FloatArray, dict[str, float]]
 # What a parameter of which nothing is told weighs, beside logarithms of deviations.
 LOST = 50.0
 
@@ -102,30 +105,14 @@ def plan_record(
     targets = wish.targets({p.name: bench.values[p.name] for p in free}) if wish else {}
     rest = bench.reached(bench.still) if bench.limited else {}
 
-    def told(weights: Sequence[float]) -> tuple[float, FloatArray, dict[str, float]]:
+    def told(weights: Sequence[float]) -> _Tried:
         moved_by = bench.within_limits(weights, rest)
         deviations = predict_drive(
             one, bench.records(moved_by), noise_std=stds, kept=kept, values=bench.values, priors=priors
         )
         return _score(deviations, targets), moved_by, deviations
 
-    first = [[1.0] * lines.count, [2.0 ** (-octave) for octave in range(lines.count)]]
-    progress.begin("Trying inputs", total=len(first) + 2 * ROUNDS * lines.count)
-    tried = [(told(weights), weights) for weights in first]
-    (best, weights) = min(tried, key=lambda pair: pair[0][0])
-    for turn in range(ROUNDS):
-        before = best[0]
-        for octave in range(lines.count):
-            for factor in (FACTOR, 1.0 / FACTOR):
-                other = [weight * (factor if place == octave else 1.0) for place, weight in enumerate(weights)]
-                tells = told(other)
-                if tells[0] < best[0] - GAIN:
-                    best, weights = tells, other
-                    break
-            progress.reach(len(first) + 2 * (turn * lines.count + octave + 1))
-        if best[0] > before - 10.0 * GAIN:
-            break
-    _, chosen, deviations = best
+    _, chosen, deviations = _best_octaves(told, lines.count, progress)
     inputs = bench.inputs(chosen)
     return PlannedRecord(
         rate_hz=rate_hz,
@@ -142,6 +129,29 @@ def plan_record(
         ),
         targets=targets,
     )
+
+
+def _best_octaves(told: Callable[[Sequence[float]], _Tried], octaves: int, progress: Progress) -> _Tried:
+    """Return the input whose octaves have the weights that tell most.
+
+    ``told``: what an input with some weights tells, by its score first.
+    """
+    first = [[1.0] * octaves, [2.0 ** (-octave) for octave in range(octaves)]]
+    progress.begin("Trying inputs", total=len(first) + 2 * ROUNDS * octaves)
+    best, weights = min(((told(weights), weights) for weights in first), key=lambda pair: pair[0][0])
+    for turn in range(ROUNDS):
+        before = best[0]
+        for octave in range(octaves):
+            for factor in (FACTOR, 1.0 / FACTOR):
+                other = [weight * (factor if place == octave else 1.0) for place, weight in enumerate(weights)]
+                tells = told(other)
+                if tells[0] < best[0] - GAIN:
+                    best, weights = tells, other
+                    break
+            progress.reach(len(first) + 2 * (turn * octaves + octave + 1))
+        if best[0] > before - 10.0 * GAIN:
+            break
+    return best
 
 
 def _score(deviations: Mapping[str, float], targets: Mapping[str, float]) -> float:

@@ -1,7 +1,7 @@
 """Days of ordinary service into the files that a logger writes, one after the other."""
 
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from shaftprint.files import reason, written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._cut import cut
 from shaftprint.recording._read import read_recording
+from shaftprint.recording._recording import Recording
 from shaftprint.recording.writers._by_ending import expect_known_ending, write_by_ending
 from shaftprint.tug._in_messages import in_messages
 from shaftprint.tug._like_stan_tug import like_stan_tug_1205
@@ -96,11 +97,8 @@ def sail_service(
     files = tuple(
         folder / f"log-{k + 1:02d}{ending}" for k in range(int(np.ceil(SECONDS_PER_HOUR * hours / FILE_S - 1e-9)))
     )
-    there = [file for file in (*files, truth_path(folder / "log.nc")) if file.exists()]
-    if there and not overwrite:
-        raise RecordingError(
-            f"{there[0]} exists already; choose another folder, or replace it: overwrite=True (--force)."
-        )
+    if not overwrite:
+        _expect_room(folder, files)
     draws = np.random.default_rng((seed, 37))
     logged_hz = vessel.logger.sample_rate_hz
     rate_hz = logged_hz * max(_OVER, np.ceil(_LEAST_HZ / logged_hz))
@@ -128,18 +126,36 @@ def sail_service(
             truth = sail(fast, course, whole, tug=tug, seed=seed, progress=progress)
             hidden = wrong.lever is not None and not wrong.is_logged
             with read_recording(whole) as recording, read_recording(before if hidden else whole) as lever:
-                for k, file in enumerate(files):
-                    stretch = {"from_s": k * FILE_S or None, "to_s": None if k == len(files) - 1 else (k + 1) * FILE_S}
-                    written = {**cut(recording, **stretch).channels}
-                    written[channels.lever] = cut(lever, **stretch).channels[channels.lever]
-                    if wrong.logged is not None:
-                        written = _changed(written, wrong.logged, channels)
-                    write_by_ending(file, written.values(), overwrite=overwrite)
+                for file, logged in zip(files, _hours(recording, lever, len(files), wrong, channels), strict=True):
+                    write_by_ending(file, logged.values(), overwrite=overwrite)
             with written_whole(truth_path(folder / "log.nc"), overwrite=overwrite) as told:
                 told.write_bytes(truth_path(whole).read_bytes())
     except OSError as error:
         raise RecordingError(f"{folder}: the logs cannot be written: {reason(error)}") from None
     return files, replace(truth, rate_hz=logged_hz)
+
+
+def _hours(
+    recording: Recording, lever: Recording, count: int, wrong: Trouble, names: Channels
+) -> Iterator[dict[str, Channel]]:
+    """Yield what each file holds: all channels of a recording, the lever as another one has it, as it is logged."""
+    for k in range(count):
+        stretch = {"from_s": k * FILE_S or None, "to_s": None if k == count - 1 else (k + 1) * FILE_S}
+        channels = {**cut(recording, **stretch).channels}
+        channels[names.lever] = cut(lever, **stretch).channels[names.lever]
+        yield channels if wrong.logged is None else _changed(channels, wrong.logged, names)
+
+
+def _expect_room(folder: Path, files: Sequence[Path]) -> None:
+    """Refuse to replace files of a log or its truth.
+
+    Raises RecordingError if one is there.
+    """
+    there = [file for file in (*files, truth_path(folder / "log.nc")) if file.exists()]
+    if there:
+        raise RecordingError(
+            f"{there[0]} exists already; choose another folder, or replace it: overwrite=True (--force)."
+        )
 
 
 def _trouble(name: str | None) -> Trouble:
