@@ -70,10 +70,6 @@ class ModelicaText:
         """Return the expression of a formula."""
         return unbracketed(self._texts[id(formula)])
 
-    def is_of_parameters(self, formula: Formula) -> bool:
-        """Return whether a formula is made of parameters and numbers only."""
-        return self._of_parameters[id(formula)]
-
     def _add(self, node: Formula, shared: bool) -> None:
         constant = all(self._of_parameters[id(part)] for part in node.of)
         constant = constant and (bool(node.of) or node.operation in ("number", "parameter"))
