@@ -13,7 +13,7 @@ from shaftprint.drift._causes import GAUGE_SCALE, Cause
 from shaftprint.drift._dated import DatedTest
 from shaftprint.drift._doubts import judged_in
 from shaftprint.drift._history import History
-from shaftprint.drift._pair import directions_of, not_judged
+from shaftprint.drift._pair import Judged, directions_of, not_judged
 from shaftprint.drift._series import own_covariances, stated_errors
 from shaftprint.drift._shared_errors import is_common
 from shaftprint.drift._single_test import SingleTest, single_test
@@ -56,13 +56,9 @@ def sister_of(name: str, history: History, *, newest: int = NEWEST_TESTS) -> Sis
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ClassNumbers:
+class ClassNumbers(Judged):
     """The numbers of all ships of a class."""
 
-    names: tuple[str, ...]
-    """Numbers that are judged together."""
-    left_out: dict[str, str]
-    """Why others are not, by name."""
     values: FloatArray
     """Mean of the tests of each ship: logarithms, and times [s]; shape (ships, numbers)."""
     own: FloatArray
@@ -76,12 +72,6 @@ class ClassNumbers:
     """That standard deviation for each cause: a share, or a time [s]; shape (causes,)."""
     is_known: bool
     """Whether the tolerances are known; else the ships tell how much of them there is."""
-    causes: tuple[Cause, ...]
-    """What may have moved the numbers."""
-    directions: FloatArray
-    """What a change of each cause by 1, or by a second, does to the numbers; shape (numbers, causes)."""
-    not_judged: tuple[Cause, ...]
-    """What may have moved numbers that were left out: it is not excluded."""
 
     def covariance_of(self, sums: FloatArray) -> FloatArray:
         """Return the covariance of weighted sums of the numbers that tests leave open.

@@ -26,23 +26,29 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Pair:
-    """The difference of two fingerprints."""
+class Judged:
+    """What can be judged of tests: numbers that all of them have, and what may have moved these."""
 
     names: tuple[str, ...]
     """Numbers that are judged together."""
     left_out: dict[str, str]
     """Why others are not, by name."""
+    causes: tuple[Cause, ...]
+    """What may have moved the numbers."""
+    directions: FloatArray
+    """What a change of each cause by 1, or by a second, does to the numbers of a test; shape (numbers, causes)."""
+    not_judged: tuple[Cause, ...]
+    """What may have moved numbers that were left out: it is not excluded."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Pair(Judged):
+    """The difference of two fingerprints."""
+
     difference: FloatArray
     """Other minus first: of logarithms, and of times [s]; shape (numbers,)."""
     covariance: FloatArray
     """Its covariance where nothing changed, shape (numbers, numbers)."""
-    causes: tuple[Cause, ...]
-    """What may have moved these numbers."""
-    not_judged: tuple[Cause, ...]
-    """What may have moved numbers that were left out: it is not excluded."""
-    directions: FloatArray
-    """What a change of each cause by 1, or by a second, does to the numbers; shape (numbers, causes)."""
 
 
 def pair_of(

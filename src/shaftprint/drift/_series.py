@@ -8,11 +8,11 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.catalogue._roles import ShipRole
-from shaftprint.drift._causes import GAUGE_SCALE, Cause
+from shaftprint.drift._causes import GAUGE_SCALE
 from shaftprint.drift._dated import EVENTS, PROGRAM_CHANGED, Event
 from shaftprint.drift._doubts import judged_in
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
-from shaftprint.drift._pair import directions_of, not_judged, weighing
+from shaftprint.drift._pair import Judged, directions_of, not_judged, weighing
 from shaftprint.drift._shared_errors import is_common
 from shaftprint.drift._single_test import SingleTest, single_test
 from shaftprint.drift._straight import straightened
@@ -27,15 +27,11 @@ speed may go with the draught by as much, up or down, one standard deviation."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Series:
+class Series(Judged):
     """Numbers of all tests; times in years since the first test."""
 
-    names: tuple[str, ...]
-    """Numbers that are judged together."""
     roles: "dict[str, Role | None]"
     """What each of them is in the line."""
-    left_out: dict[str, str]
-    """Why others are not, by name."""
     time_a: FloatArray
     """When each test was made [years since the first], shape (tests,)."""
     values: FloatArray
@@ -44,12 +40,6 @@ class Series:
     """Covariance of all numbers of all tests, those of one test together, shape (tests * numbers,) squared."""
     baseline: FloatArray
     """What may be another after an event, and the level of all; shape (tests * numbers, columns)."""
-    causes: tuple[Cause, ...]
-    """What may have moved the numbers."""
-    directions: FloatArray
-    """What a change of each cause by 1, or by a second, does to the numbers of a test; shape (numbers, causes)."""
-    not_judged: tuple[Cause, ...]
-    """What may have moved numbers that were left out: it is not excluded."""
 
 
 def series_of(history: History, *, made: int, load_repeatability: float, moved: FloatArray | None = None) -> Series:

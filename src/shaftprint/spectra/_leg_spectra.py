@@ -8,7 +8,7 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ResponseError
 from shaftprint.spectra._aliases import alias_remarks
-from shaftprint.spectra._line_responses import response_of_lines
+from shaftprint.spectra._line_responses import HIGHEST_SHARE_OF_RATE, channels_on_grid, response_of_lines
 from shaftprint.spectra._shift_check import shift_reasons
 from shaftprint.spectra._spectra import Spectra
 from shaftprint.spectra._speed_ratios import speed_ratios
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
 SPEED = "n_set"
 """Symbol of the set point of the speed."""
 _Lines: TypeAlias = tuple[tuple[int, ...], tuple[int, ...]]
-# A line this close to half the rate of the grid is bent by the anti-alias filter.
-_HIGHEST_SHARE_OF_RATE = 0.45
 
 
 @refusing_none(ResponseError)
@@ -127,9 +125,6 @@ def _leg(signals: "Signals", leg: "Leg", measured: "LegLines", moved: "Excitatio
         used=used,
         load=load,
         remarks=remarks | finding.silent,
-        averaging_s=sensor.averaging_s,
-        hold_s=sensor.hold_s,
-        pick_up_delay_s=sensor.delay_s,
     )
     of_response = shift_reasons(response) if moved.from_engine else ()
     of_band = band_reasons(band, channel=moved.channel, symbol=moved.name)
@@ -193,12 +188,9 @@ def _measured(
 
     ``lines_of`` are the harmonics of the speed, and those of all else.
     """
-    highest = _HIGHEST_SHARE_OF_RATE * signals.rate_hz * leg.length_of_period_s
+    highest = HIGHEST_SHARE_OF_RATE * signals.rate_hz * leg.length_of_period_s
     harmonics = _below(tuple(leg.lines), highest)
-    apart = {*signals.excitations, *signals.messages} - {excitation}
-    channels = {
-        name: signal for name, signal in signals.channels.items() if name not in apart and signal.answers(excitation)
-    }
+    channels = {name: signals.channels[name] for name in channels_on_grid(signals, excitation)}
     window = cut_leg(
         {name: signal.values for name, signal in channels.items()},
         {name: signal.reference for name, signal in channels.items()},

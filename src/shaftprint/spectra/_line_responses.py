@@ -18,6 +18,8 @@ NOT_MEASURED_STD = 100.0
 """Standard deviation of real and imaginary part of a response that was not measured [-]: a line that is governed stays
 below a tenth of it, so that it has no weight for that output. Its correlation with the others is 0."""
 
+HIGHEST_SHARE_OF_RATE = 0.45
+"""Over the rate of the grid; closer to half of it a line has no neighbours above, and the filter bends it."""
 _SPEED_AND_TORQUE = 2
 _ROUNDING = 1e-15
 
@@ -29,6 +31,12 @@ def outputs_of(signals: "Signals", channels: Sequence[str]) -> tuple[str, ...]:
     """
     side = [name for name in channels if signals.channels[name].is_side]
     return ("n", "M_s", *side, *signals.messages)
+
+
+def channels_on_grid(signals: "Signals", moved: str) -> tuple[str, ...]:
+    """Return the channels that a stretch is cut out of: what was moved, and what answers on the grid."""
+    apart = {*signals.excitations, *signals.messages} - {moved}
+    return tuple(name for name, signal in signals.channels.items() if name not in apart and signal.answers(moved))
 
 
 def response_of_lines(
@@ -77,6 +85,9 @@ def response_of_lines(
         degrees_of_freedom=np.array([2.0 * line.noise.complex_samples for line in measurements]),
         common={excitation.scale_error: common},
         middle_s=np.array([0.5 * (line.window.start_s + line.window.stop_s) for line in measurements]),
+        averaging_s=sensor.averaging_s,
+        hold_s=sensor.hold_s,
+        pick_up_delay_s=sensor.delay_s,
     )
 
 

@@ -12,7 +12,7 @@ from shaftprint.notebook._shown import Shown
 from shaftprint.reasons import Reason
 from shaftprint.spectra._aliases import alias_remarks
 from shaftprint.spectra._frequency_response import FrequencyResponse
-from shaftprint.spectra._line_responses import response_of_lines
+from shaftprint.spectra._line_responses import HIGHEST_SHARE_OF_RATE, channels_on_grid, response_of_lines
 from shaftprint.spectra._shift_check import shift_reasons
 from shaftprint.spectra._speed_ratios import SpeedRatio, speed_ratios
 from shaftprint.spectra.lines._clock_check import clock_reasons
@@ -42,8 +42,6 @@ if TYPE_CHECKING:
 
 _WHOLE_PERIOD_SINE = WholePeriodSine()
 
-# A line this close to half the rate of the grid has no neighbours above it and is bent by the anti-alias filter.
-_HIGHEST_SHARE_OF_RATE = 0.45
 _SILENT_SHARE = 1e-3
 
 
@@ -132,7 +130,7 @@ def estimate_spectra(
     sensor = _speed_signal(signals, speed)
     moved = _excitation(signals, excitation)
     campaign = campaign.of_input(moved.input)
-    names = _channels_on_grid(signals, moved)
+    names = channels_on_grid(signals, moved.name)
     windows, left_out = _windows_inside(signals, campaign, names)
     measurements = [_measure(signals, cut, moved, method) for cut in _cuts(signals, windows, names)]
     check_frequency_unit(measurements)
@@ -153,9 +151,6 @@ def estimate_spectra(
         used=np.ones_like(usable) if thesis else usable,
         remarks=remarks | silent | left_out,
         load=load,
-        averaging_s=sensor.averaging_s,
-        hold_s=sensor.hold_s,
-        pick_up_delay_s=sensor.delay_s,
     )
     against = () if thesis else _against(_cuts(signals, windows, names), measurements, sensor, moved, response)
     expected = np.array([_expected_amplitude(moved, campaign, line) for line in measurements])
@@ -200,13 +195,6 @@ def _excitation(signals: "Signals", name: str) -> "ExcitationSignal":
     return signals.excitations[name]
 
 
-def _channels_on_grid(signals: "Signals", moved: "ExcitationSignal") -> tuple[str, ...]:
-    """Return the channels that a window is cut out of: what was moved, and what answers on the grid."""
-    apart = {*signals.excitations, *signals.messages} - {moved.name}
-    answers = (name for name, signal in signals.channels.items() if signal.answers(moved.name))
-    return tuple(name for name in answers if name not in apart)
-
-
 def _speed_signal(signals: "Signals", speed: str | None) -> "SpeedSignal":
     if speed is None:
         return signals.engine_speed
@@ -235,10 +223,10 @@ def _windows_inside(
     count = min(signals.channels[name].values.size for name in names)
     windows, left_out = [], {}
     for window in plan_windows(campaign):
-        if window.frequency_hz > _HIGHEST_SHARE_OF_RATE * signals.rate_hz:
+        if window.frequency_hz > HIGHEST_SHARE_OF_RATE * signals.rate_hz:
             left_out[window.line] = (
                 f"left out: {window.frequency_hz:g} Hz is above "
-                f"{_HIGHEST_SHARE_OF_RATE * signals.rate_hz:g} Hz, what signals of "
+                f"{HIGHEST_SHARE_OF_RATE * signals.rate_hz:g} Hz, what signals of "
                 f"{signals.rate_hz:g} Hz show"
             )
             continue

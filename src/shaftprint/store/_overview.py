@@ -1,31 +1,20 @@
 """What a page shows of a store: its lines as they stand, all that is kept of one line, and one fingerprint."""
 
-from dataclasses import dataclass, replace
-from datetime import datetime
+from dataclasses import dataclass, fields, replace
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 from shaftprint.store._find import ship_called
-from shaftprint.store._nouns import Event, HistoryEntry, Line, Ship, StoredFingerprint, StoredNumber
+from shaftprint.store._nouns import Event, HistoryEntry, Line, LineSummary, Ship, StoredFingerprint
 from shaftprint.store._store import Store, part_with_database
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class LineNow:
+class LineNow(LineSummary):
     """A line with its newest test, and a word that changes with every test and event of it."""
 
     ship_id: int
     """Number of the ship in this database."""
-    line: Line
-    """The line."""
-    tests: int
-    """How many tests of it are kept."""
-    tested_at: datetime | None
-    """When the newest was made; None where there is none."""
-    trustworthy: bool | None
-    """Whether its numbers may be used."""
-    number: StoredNumber | None
-    """The number that was asked for, at the newest test."""
     state: str
     """Another word after each fingerprint and event that is put in."""
 
@@ -61,12 +50,8 @@ def lines_now(store: Store, *, number: str | None = None) -> tuple[LineNow, ...]
         keys = list(reader.lines(ships))
         return tuple(
             LineNow(
+                **{field.name: getattr(one, field.name) for field in fields(one)},
                 ship_id=ship_of[one.line.ship],
-                line=one.line,
-                tests=one.tests,
-                tested_at=one.tested_at,
-                trustworthy=one.trustworthy,
-                number=one.number,
                 state=states.get(key, ""),
             )
             for key, one in zip(keys, reader.summaries(number=number), strict=True)
