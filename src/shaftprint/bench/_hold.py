@@ -104,9 +104,13 @@ def _fitted_otherwise(
 
 def _deviance(fit: Identification) -> float:
     """Return the deviance of a fit with the noise that it found itself: what chi-square leaves out is its size."""
+    return 2.0 * fit.cost + noise_left(fit)
+
+
+def noise_left(fit: Identification) -> float:
+    """Return the logarithm of what the noise models hold, the determinant of innovations over all samples."""
     terms = [term for term in fit.objective.terms if isinstance(term, OutputError)]
-    size = sum(term.record.used.sum() * np.linalg.slogdet(term.whitening.noise.covariance)[1] for term in terms)
-    return float(2.0 * fit.cost + size)
+    return float(sum(term.record.used.sum() * np.linalg.slogdet(term.whitening.noise.covariance)[1] for term in terms))
 
 
 def _apart(fit: Identification, other: Identification) -> str:

@@ -1,6 +1,7 @@
 """The drive that a fingerprint describes, without its file: signals and the shipped structure that it names."""
 
 from shaftprint.bench._equipped import EquippedDrive, equipped
+from shaftprint.bench._named import with_named
 from shaftprint.catalogue._drives import DRIVES
 from shaftprint.drive._drive import Drive
 from shaftprint.drive._signals import Signal
@@ -20,7 +21,7 @@ def kept_drive(
     shipped, and neither file nor structure is given.
     """
     if drive is not None:
-        return equipped(_without_structure(drive) if own is not None else drive, own=own)
+        return equipped(drive if own is None else with_named(drive), own=own)
     if own is None and fingerprint.structure not in DRIVES:
         raise FingerprintError(
             f"fingerprint of {printable(fingerprint.drive)}: expected the name of a shipped structure, found "
@@ -34,7 +35,3 @@ def kept_drive(
         outputs=tuple(Signal(name=n, channel=n, unit=unit) for n, unit in fingerprint.outputs.items()),
     )
     return equipped(kept, own=own)
-
-
-def _without_structure(drive: Drive) -> Drive:
-    return drive.model_copy(update={"structure": None, "blocks": (), "parameters": ()})

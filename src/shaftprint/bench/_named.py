@@ -44,13 +44,13 @@ def named_drives(
 
 def _named(drive: Drive, name: TypedName) -> EquippedDrive:
     if own_file(name) is None:
-        return equipped(_without_structure(drive, str(name)))
+        return equipped(with_named(drive, str(name)))
     (structure,) = chosen_structures([name])
-    return equipped(_without_structure(drive, None), own=structure)
+    return equipped(with_named(drive), own=structure)
 
 
-def _without_structure(drive: Drive, name: str | None) -> Drive:
-    """Return the drive with the structure that the user names instead of its own."""
+def with_named(drive: Drive, name: str | None = None) -> Drive:
+    """Return the drive with the shipped structure that the user names, or none, instead of its own."""
     return drive.model_copy(update={"structure": name, "blocks": (), "parameters": ()})
 
 

@@ -17,6 +17,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import STARTS, drive_settings, drive_time_settings
+from shaftprint.bench._hold import noise_left
 from shaftprint.bench._per_record import all_parameters, free_parameters, own_priors, with_structures
 from shaftprint.bench._search import search_drive
 from shaftprint.distributions import chi_square_tail
@@ -103,7 +104,7 @@ def compare_in_time(
     own: list[Identification] = []
     for one, generator in zip(ordered, rng.spawn(len(drives)), strict=True):
         own.append(_own(one, records, own, generator, starts))
-    best = min(own, key=_left)
+    best = min(own, key=noise_left)
     fits: list[Identification] = []
     for one, alone in zip(ordered, own, strict=True):
         fits.append(_common(one, records, alone, fits, best, rng))
@@ -151,17 +152,6 @@ def _extra(small: Sequence[Parameter], large: Sequence[Parameter]) -> list[str]:
     others = all(name in free for name in free_in_small) and len(free) == len(free_in_small) + len(extra)
     inside = all(free[name].lower <= fixed[name] <= free[name].upper for name in extra)
     return extra if [p.name for p in small] == [p.name for p in large] and others and inside else []
-
-
-def _left(fit: Identification) -> float:
-    """Return the logarithm of what the noise models hold, the determinant of innovations over all samples."""
-    return float(
-        sum(
-            term.record.used.sum() * np.linalg.slogdet(term.whitening.noise.covariance)[1]
-            for term in fit.objective.terms
-            if isinstance(term, OutputError)
-        )
-    )
 
 
 def _common(
