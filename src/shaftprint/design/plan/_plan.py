@@ -69,13 +69,13 @@ class Peaks(Shown):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
-class Plan(Shown):
-    """A test that is designed but not rehearsed: its numbers are predicted."""
+class LaidDown:
+    """What is laid down before a test is designed."""
 
     ship: AssumedShip
-    """What was assumed of the ship."""
+    """What is assumed of the ship."""
     wish: Wish
-    """What was wanted."""
+    """What is wanted."""
     limits: Limits
     """What ship and engine allow."""
     priors: Mapping[str, Prior]
@@ -86,6 +86,14 @@ class Plan(Shown):
     """Noise at each leg."""
     structures: tuple[Structure, ...]
     """The structure as it is normalised at each leg."""
+    earlier: tuple[SailedTest, ...] = ()
+    """Tests that were sailed before and are fitted together with this one."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Plan(LaidDown, Shown):
+    """A test that is designed but not rehearsed: its numbers are predicted."""
+
     legs: tuple[Leg, ...]
     """The legs, in the order in which they are sailed."""
     peaks: tuple[Peaks, ...]
@@ -94,8 +102,6 @@ class Plan(Shown):
     """Levels of the staircase at the end, as deviations from the level of the first leg [rpm]; none without one."""
     band: Band | None = None
     """How far what is predicted reaches, where ship or noise are not known; None where it was not looked for."""
-    earlier: tuple[SailedTest, ...] = ()
-    """Tests that were sailed before and are fitted together with this one."""
     predicted: Accuracy
     """How well the numbers would be known, at the assumed values and to first order."""
 

@@ -15,7 +15,7 @@ from shaftprint.design.motion._bounds import bounds_of_leg
 from shaftprint.design.motion._gauge import gauge_bounds
 from shaftprint.design.motion._motion import expect_motion, motion, motion_noise
 from shaftprint.design.plan._leg import odd_harmonics
-from shaftprint.design.plan._plan import SailedTest
+from shaftprint.design.plan._plan import LaidDown, SailedTest
 from shaftprint.design.plan._timetable import Timetable
 from shaftprint.design.search._uses import Uses
 from shaftprint.errors import DesignError
@@ -24,7 +24,6 @@ from shaftprint.identify.prediction._line_information import LineInformation, li
 from shaftprint.identify.prediction._noise_at_speeds import noise_at
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
 from shaftprint.identify.prediction._planned_response import planned_lines
-from shaftprint.models._structure import Structure
 from shaftprint.models._working_point import at_working_point
 
 # Odd harmonics of a leg.
@@ -32,25 +31,11 @@ MOST_LINES = 70
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Brief:
+class Brief(LaidDown):
     """Everything that is laid down before the search: legs without their amplitudes, and what binds them."""
 
-    ship: AssumedShip
-    """What is assumed of the ship."""
-    wish: Wish
-    """What is wanted."""
-    limits: Limits
-    """What ship and engine allow."""
-    priors: Mapping[str, Prior]
-    """What the fit will know besides."""
-    timetable: Timetable
-    """How the time is divided."""
     speeds: tuple[float, ...]
     """Mean speed of each leg over that of the first working point."""
-    noise: tuple[NoiseLevels, ...]
-    """Noise at each leg."""
-    structures: tuple[Structure, ...]
-    """The structure as it is normalised at each leg."""
     bounds: tuple[tuple[Bound, ...], ...]
     """Bounds of each leg."""
     harmonics: tuple[tuple[int, ...], ...]
@@ -59,8 +44,6 @@ class Brief:
     """Whole periods of each leg."""
     period_s: float
     """Their length [s]."""
-    earlier: tuple[SailedTest, ...] = ()
-    """Responses of tests that were sailed before, which will be fitted together with this one."""
 
     @classmethod
     def of(

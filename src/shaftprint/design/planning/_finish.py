@@ -1,14 +1,14 @@
 """From amplitudes of any size to a plan: each leg as strong as its limits let it be, and what it then asks for."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.design.motion._motion import motion
 from shaftprint.design.plan._leg import Leg, strong_lines
-from shaftprint.design.plan._plan import Peaks, Plan, peaks_of, predicted_accuracy
+from shaftprint.design.plan._plan import LaidDown, Peaks, Plan, peaks_of, predicted_accuracy
 from shaftprint.design.planning._brief import Brief
 from shaftprint.design.planning._stairs import stairs_of
 from shaftprint.design.planning._start import gentle_start
@@ -40,18 +40,11 @@ def plan_of_lines(brief: Brief, amplitudes: Sequence[ComplexArray], table: Float
         brief.structures, legs, brief.noise, values=brief.ship.by_name, priors=brief.priors, earlier=brief.earlier
     )
     return Plan(
-        ship=brief.ship,
-        wish=brief.wish,
-        limits=brief.limits,
-        priors=brief.priors,
-        timetable=brief.timetable,
-        noise=brief.noise,
-        structures=brief.structures,
+        **{field.name: getattr(brief, field.name) for field in fields(LaidDown)},
         legs=legs,
         peaks=tuple(peaks for _, peaks in finished),
         stairs_rpm=stairs_of(brief, table[held]),
         predicted=predicted,
-        earlier=brief.earlier,
     )
 
 

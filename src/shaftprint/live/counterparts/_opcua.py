@@ -124,27 +124,22 @@ class OpcUaCounterpart:
 
     async def take(self) -> None:
         """Take the set point over; refused where anybody could."""
-        self._expect_writer()
         await self._call("Take")
 
     async def write(self, volts: float) -> None:
         """Write a set point."""
-        self._expect_writer()
         await self._call("Write", float(volts))
 
     async def play(self, play: Play) -> None:
         """Play a waveform."""
-        self._expect_writer()
         await self._call("Play", play.name, float(play.start_s), float(play.rate_hz), play.volts.tolist())
 
     async def abort(self, ramp_s: float) -> None:
         """Go back to the lever on a cosine."""
-        self._expect_writer()
         await self._call("Abort", float(ramp_s))
 
     async def release(self) -> None:
         """Give the set point back to the lever now."""
-        self._expect_writer()
         await self._call("Release")
 
     async def close(self) -> None:
@@ -213,6 +208,7 @@ class OpcUaCounterpart:
         self._access.expect_writer(self.name, is_encrypted=self._access.certificate is not None)
 
     async def _call(self, name: str, *arguments: Any) -> None:
+        self._expect_writer()
         refused = await self._answered(self._folder.call_method(f"{self._space}:{name}", *arguments))
         if refused:
             raise LiveError(f"{self.name}: {printable(str(refused))}")
