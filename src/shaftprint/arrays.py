@@ -1,7 +1,7 @@
-"""Names for array types, read-only arrays for the values that rooms hand on, and parts of covariances."""
+"""Names for array types, read-only arrays for the values that rooms hand on, and parts of arrays."""
 
 from collections.abc import Sequence
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +11,7 @@ ComplexArray: TypeAlias = NDArray[np.complex128]
 RealOrComplexArray: TypeAlias = FloatArray | ComplexArray
 BoolArray: TypeAlias = NDArray[np.bool_]
 IntArray: TypeAlias = NDArray[np.int64]
+_Kind = TypeVar("_Kind", bound=np.generic)
 
 
 def frozen_float(values: ArrayLike) -> FloatArray:
@@ -47,3 +48,15 @@ def known_part(covariance: FloatArray) -> FloatArray:
     """Return a covariance with zeros for all of which nothing is known, those of infinite variance."""
     lost = ~np.isfinite(np.diag(covariance))
     return np.where(lost[:, None] | lost[None, :], 0.0, covariance)
+
+
+def in_blocks(values: NDArray[_Kind], length: int) -> NDArray[_Kind]:
+    """Return values in blocks of one length, shape (blocks, length); what is left at the end does not count."""
+    count = values.size // length
+    return values[: count * length].reshape(count, length)
+
+
+def runs_of(wanted: BoolArray) -> list[tuple[int, int]]:
+    """Return the first place and that after the last of every run that is true, in order."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], wanted, [False]])))
+    return [(first, stop) for first, stop in edges.reshape(-1, 2).tolist()]

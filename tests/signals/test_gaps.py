@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.arrays import runs_of
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.recording import ClockJump
 from shaftprint.signals import Gap, prepare_signals
-from shaftprint.signals._gaps import Coverage, bridge, gap_findings, joined, merged, runs_of
+from shaftprint.signals._gaps import Coverage, bridge, gap_findings, joined, merged
 from shaftprint.signals.excitation._match import left_out
 
 RATE_HZ = 2000.0

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, runs_of
 from shaftprint.design.operation._operation import Operation
 from shaftprint.errors import LiveError, ShaftprintError
 from shaftprint.forecast._predict import expected_motion
@@ -225,9 +225,8 @@ def _outside(one: Foreseen) -> str:
 def _barred(speed_rpm: FloatArray, envelope: Envelope) -> list[str]:
     refusals = []
     for low, high in envelope.barred_rpm:
-        inside = np.concatenate([[0.0], ((speed_rpm > low) & (speed_rpm < high)).astype(np.float64), [0.0]])
-        ends = np.flatnonzero(np.diff(inside))
-        longest_s = float(np.max(ends[1::2] - ends[::2], initial=0.0)) / _PREDICTED_HZ
+        inside = runs_of((speed_rpm > low) & (speed_rpm < high))
+        longest_s = max((stop - first for first, stop in inside), default=0) / _PREDICTED_HZ
         if longest_s > envelope.barred_passage_s:
             refusals.append(
                 f"engine speed: expected to pass {low:g} to {high:g} rpm, which is barred, within "

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import BoolArray, FloatArray, runs_of
 from shaftprint.service._log import Block
 
 BEFORE_S = 2.0
@@ -69,8 +69,7 @@ def moving(lever_v: FloatArray, rate_hz: float, *, range_v: float) -> BoolArray:
 def moves_of(block: Block, *, range_v: float) -> Iterator[Move]:
     """Yield the moves of a block in order of time, those that follow on each other as one."""
     rate, size = block.rate_hz, block.lever_v.size
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], moving(block.lever_v, rate, range_v=range_v), [False]])))
-    begins, ends = edges[::2], edges[1::2]
+    begins, ends = np.array(runs_of(moving(block.lever_v, rate, range_v=range_v)), dtype=np.int64).reshape(-1, 2).T
     apart = np.flatnonzero(begins[1:] - ends[:-1] > APART_S * rate)
     groups = np.split(np.arange(begins.size), apart + 1) if begins.size else []
     slack = round(_WITHIN_S * rate) - 1

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import BoolArray, FloatArray, runs_of
 from shaftprint.signals._channels import time_of
 
 if TYPE_CHECKING:
@@ -165,12 +165,6 @@ def joined(values: FloatArray) -> FloatArray:
     if indices.size in (0, values.size):
         return values
     return np.interp(np.arange(values.size), indices, values[indices])
-
-
-def runs_of(wrong: BoolArray) -> list[tuple[int, int]]:
-    """Return the first place and that after the last of every run that is true, in order."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], wrong, [False]])))
-    return [(int(first), int(stop)) for first, stop in edges.reshape(-1, 2)]
 
 
 def bridge(values: FloatArray, gaps: Iterable[Gap], *, start_s: float, rate_hz: float) -> None:

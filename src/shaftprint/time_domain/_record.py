@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
+from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float, runs_of
 from shaftprint.errors import SignalError
 from shaftprint.notebook._shown import Shown
 from shaftprint.time_domain._decimator import Decimator
@@ -114,8 +114,7 @@ class Record(Shown):
     @property
     def stretches(self) -> tuple[slice, ...]:
         """Uninterrupted stretches of used samples, in order of time."""
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], self.used, [False]])))
-        return tuple(slice(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True))
+        return tuple(slice(*run) for run in runs_of(self.used))
 
 
 def record_from_arrays(

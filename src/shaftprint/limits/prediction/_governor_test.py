@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
+from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float, in_blocks
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.catalogue._limited_governor import AHEAD_S
 from shaftprint.errors import SignalError
@@ -86,11 +86,11 @@ class GovernorTest:
         count = round(BLOCK_S / self.step_s)
         set_point = self.without_jumps + sum_of_jumps(self.time_s, self.jumps, self.late_s)
         known = ~self.lost & (self.time_s >= self.begin_s) & (self.time_s <= self.end_s)
-        blocks = [one[: one.size // count * count].reshape(-1, count) for one in (set_point, self.speed, known)]
-        still = blocks[2].all(axis=1) & (blocks[0].std(axis=1) < STILL)
+        asked, turned = in_blocks(set_point, count), in_blocks(self.speed, count)
+        still = in_blocks(known, count).all(axis=1) & (asked.std(axis=1) < STILL)
         if not still.any():
             return 0.0
-        return float(np.median((blocks[1] - blocks[0])[still].mean(axis=1)))
+        return float(np.median((turned - asked)[still].mean(axis=1)))
 
     def with_inertia(self, factor: float) -> "GovernorTest":
         """Return the test as if the inertia upstream of the gauge were larger by a factor."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import BoolArray, FloatArray, in_blocks
 from shaftprint.catalogue._limited_governor import GovernorSymbol
 from shaftprint.kernels._compiled import compiled
 from shaftprint.limits._candidates import Kind
@@ -56,9 +56,9 @@ class Reach:
     def of(cls, test: GovernorTest) -> "Reach":
         """Return what a test reached."""
         every = max(round(1.0 / (GRID_HZ * test.step_s)), 1)
-        speed, torque = (_thinned(one, every) for one in (test.speed, test.engine_torque()))
+        speed, torque = (in_blocks(one, every).mean(axis=1) for one in (test.speed, test.engine_torque()))
         inside = (test.time_s >= test.begin_s) & (test.time_s <= test.end_s)
-        lost = _thinned((test.lost | ~inside).astype(np.float64), every) > 0.0
+        lost = np.any(in_blocks(test.lost | ~inside, every), axis=1)
         step_s = every * test.step_s
         load = np.maximum(1.0 + speed, LEAST_SPEED) ** 2
         return cls(
@@ -110,11 +110,6 @@ class Reach:
     def _windows(self, values: FloatArray, window_s: float) -> FloatArray:
         """Return the means of all windows in which everything is known."""
         return _means(values, self.lost, round(window_s * GRID_HZ))
-
-
-def _thinned(values: FloatArray, every: int) -> FloatArray:
-    """Return means of blocks of samples."""
-    return np.asarray(values[: values.size // every * every].reshape(-1, every).mean(axis=1), dtype=np.float64)
 
 
 def _means(values: FloatArray, lost: BoolArray, count: int) -> FloatArray:

@@ -4,9 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-import numpy as np
-
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import FloatArray
 from shaftprint.report.charts._text import Text
 
 Shade: TypeAlias = int | Literal["data", "ink", "soft", "reference", "early"]
@@ -165,9 +163,3 @@ class Words:
 
 
 Mark: TypeAlias = Line | Band | Points | Bars | Fields | Straight | Words
-
-
-def runs(known: BoolArray) -> list[slice]:
-    """Return the stretches in which all is known, such as the pieces of a band between its gaps."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(np.int8)))
-    return [slice(int(first), int(last)) for first, last in edges.reshape(-1, 2)]

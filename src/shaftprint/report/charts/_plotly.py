@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from shaftprint.arrays import runs_of
 from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import (
     COLOURS,
@@ -25,7 +26,6 @@ from shaftprint.report.charts._marks import (
     Words,
     dash_of,
     marker_of,
-    runs,
     texture_of,
 )
 from shaftprint.report.charts._packed import Json, line_data, numbers, plain_json
@@ -137,7 +137,7 @@ def _band(mark: Band) -> Json:
     known = np.isfinite(mark.lower) & np.isfinite(mark.upper)
     x: list[float | None] = []
     y: list[float | None] = []
-    for piece in runs(known):
+    for piece in (slice(*run) for run in runs_of(known)):
         there = numbers(mark.x[piece])
         x += [*there, *reversed(there), None]
         y += [*numbers(mark.upper[piece]), *reversed(numbers(mark.lower[piece])), None]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, runs_of
 from shaftprint.signals._channels import Counts, time_of
 from shaftprint.signals._gaps import Gap
 from shaftprint.signals._signals import Repair
@@ -82,7 +82,7 @@ class Patcher:
         """Replace the faults in place; return how many samples are settled."""
         if codes.size and codes[0] == GOOD:
             self._end_gap(done)
-        for first, stop in _runs(codes):
+        for first, stop in runs_of(codes != GOOD):
             is_whole = stop < values.size or final
             if self._gap_since is not None or (is_whole and self._too_long(codes[first:stop])):
                 self._begin_gap(done + first)
@@ -155,14 +155,3 @@ class Patcher:
         reason = _REASONS.get(self._gap_code, _REASONS[MISSING])
         self.gaps.append(Gap(channel=self.channel.name, start_s=start_s, stop_s=stop_s, reason=reason))
         self._gap_since = None
-
-
-def _runs(codes: NDArray[np.uint8]) -> list[tuple[int, int]]:
-    """Return [first, stop) of every run of faulty samples."""
-    faulty = np.flatnonzero(codes)
-    if faulty.size == 0:
-        return []
-    breaks = np.flatnonzero(np.diff(faulty) > 1)
-    firsts = faulty[np.concatenate([[0], breaks + 1])]
-    stops = faulty[np.concatenate([breaks, [faulty.size - 1]])] + 1
-    return list(zip(firsts.tolist(), stops.tolist(), strict=True))

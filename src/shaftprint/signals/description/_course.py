@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import FloatArray, in_blocks, runs_of
 
 # A window that is flat for so long is not the crest of a sine of the tests' size [s].
 FLAT_S = 1.0
@@ -63,7 +63,7 @@ class Course:
         width_v = _FLAT_STDS * self.noise_v + _QUIET_SHARE * self.range_v
         beside = np.abs(self.values_v - self.offset_v) <= width_v
         found = []
-        for first, stop in runs(beside):
+        for first, stop in runs_of(beside):
             third = (stop - first) // 3
             if stop - first < FLAT_S * self.rate_hz:
                 continue
@@ -79,7 +79,7 @@ def course_of(values_v: FloatArray, *, rate_hz: float, start_s: float) -> Course
     ``values_v``: set point on the grid [V], shape (samples,). ``rate_hz``, ``start_s``: the grid.
     """
     window = max(round(FLAT_S * rate_hz), 4)
-    blocks = values_v[: values_v.size // window * window].reshape(-1, window)
+    blocks = in_blocks(values_v, window)
     spread = blocks.std(axis=1)
     noise_v = float(np.quantile(spread, _QUIETEST)) if spread.size else 0.0
     range_v = float(np.ptp(np.quantile(values_v, [0.001, 0.999])))
@@ -93,13 +93,12 @@ def course_of(values_v: FloatArray, *, rate_hz: float, start_s: float) -> Course
 def _returned_to(values_v: FloatArray, *, flat_v: float, noise_v: float, rate_hz: float) -> float:
     """Return the level that most flat stretches have [V]; the middle of all values where none is flat."""
     window = max(round(FLAT_S * rate_hz), 2)
-    count = values_v.size // window
-    blocks = values_v[: count * window].reshape(count, window)
+    blocks = in_blocks(values_v, window)
     means = blocks.mean(axis=1)
     flat = np.ptp(blocks, axis=1) <= 2.0 * flat_v
     allowed_v = _MEAN_STDS * noise_v / np.sqrt(_INDEPENDENT * window) + 1e-3 * flat_v
     same = flat[1:] & flat[:-1] & (np.abs(np.diff(means)) <= allowed_v)
-    stretches = [(a, b + 1) for a, b in runs(same) if b + 1 - a >= _FEWEST_FLAT]
+    stretches = [(a, b + 1) for a, b in runs_of(same) if b + 1 - a >= _FEWEST_FLAT]
     if not stretches:
         return 0.5 * float(values_v.min() + values_v.max())
     levels = np.array([means[a:b].mean() for a, b in stretches])
@@ -109,9 +108,3 @@ def _returned_to(values_v: FloatArray, *, flat_v: float, noise_v: float, rate_hz
     best = int(np.argmax(near @ weights))
     chosen = np.concatenate([means[a:b] for (a, b), same in zip(stretches, near[best], strict=True) if same])
     return float(chosen.mean())
-
-
-def runs(mask: BoolArray) -> list[tuple[int, int]]:
-    """Return the runs of true values, as first place and the one behind the last."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
-    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, runs_of
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._moves import length_of_move_s
 from shaftprint.campaign._setpoint import setpoint
 from shaftprint.errors import SignalError
-from shaftprint.signals.description._course import Course, course_of, runs
+from shaftprint.signals.description._course import Course, course_of
 from shaftprint.signals.description._excitations import multisine_fields, register_fields, stairs_fields, wave_fields
 from shaftprint.signals.description._holds_of import SHORTEST_DWELL_S, holds_of, is_level, stairs_of, with_one_dwell
 from shaftprint.signals.description._parse import Unexplained, pieces_of, with_exact_borders
@@ -196,7 +196,7 @@ def _judged(course: Course, campaign: Campaign) -> Description:
     other = locally_wrong(residual, _OTHER_SHARE * course.range_v + 5.0 * course.noise_v, course)
     joined = np.convolve(other, np.ones(2 * round(course.rate_hz) + 1), mode="same") > 0.5
     stretches = []
-    for first, stop in runs(joined):
+    for first, stop in runs_of(joined):
         inside = np.flatnonzero(other[first:stop])
         begin, end = first + int(inside[0]), first + int(inside[-1]) + 1
         if np.count_nonzero(other[begin:end]) >= _OTHER_S * course.rate_hz:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, in_blocks
 from shaftprint.signals.description._course import Course
 from shaftprint.signals.description._pieces import Repeated
 from shaftprint.signals.description._waves import LOCAL_SHARE, locally_wrong
@@ -55,9 +55,8 @@ def _period(course: Course, first: int, stop: int) -> float | None:
     every = max(round(course.rate_hz / _LOOKED_HZ), 1)
     rate_hz = course.rate_hz / every
     # means of blocks: what is faster than they are must not fold
-    count = (stop - first) // every
-    coarse = course.values_v[first : first + count * every].reshape(count, every).mean(axis=1)
-    for lag in range(round(_SHORTEST_S * rate_hz), count // 2 + 1):
+    coarse = in_blocks(course.values_v[first:stop], every).mean(axis=1)
+    for lag in range(round(_SHORTEST_S * rate_hz), coarse.size // 2 + 1):
         here, there = coarse[:lag], coarse[lag : 2 * lag]
         motion = float(np.var(here))
         if motion <= (2.0 * course.flat_v) ** 2 or float(np.mean((there - here) ** 2)) > _COARSE * motion:

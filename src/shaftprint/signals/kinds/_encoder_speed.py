@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, runs_of
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import Counts
-from shaftprint.signals._gaps import Gap, bridge, clock_gaps, gaps_of_missing, joined, runs_of
+from shaftprint.signals._gaps import Gap, bridge, clock_gaps, gaps_of_missing, joined
 from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.conditioning._outliers import fault_limits
 from shaftprint.signals.kinds._angle_range import angle_range, range_of_small_steps, wrapped

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import FloatArray, frozen_float, in_blocks, runs_of
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, MessageSignal
 from shaftprint.signals._channels import blocks, time_of
-from shaftprint.signals._gaps import Coverage, Gap, clock_gaps, joined, runs_of
+from shaftprint.signals._gaps import Coverage, Gap, clock_gaps, joined
 from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
@@ -258,7 +258,7 @@ def _working_point(inside: list[FloatArray], rate_hz: float, resolution: float) 
         return np.nan, np.nan
     deviations = []
     for values in long_enough:
-        means = values[: values.size - values.size % length].reshape(-1, length).mean(axis=1)
+        means = in_blocks(values, length).mean(axis=1)
         deviations.append(float(means.std(ddof=1) / np.sqrt(means.size)))
     weight = np.array([float(values.size) for values in long_enough])
     share = weight / weight.sum()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import FloatArray, frozen_float, in_blocks
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal
 from shaftprint.signals._channels import blocks
@@ -114,7 +114,7 @@ def ship_speed_signal(
     """
     block = max(round(clock.rate_hz), 1)
     parts = steady_parts(speed_m_s, clock, stretches)
-    means = [part[: part.size - part.size % block].reshape(-1, block).mean(axis=1) for part in parts]
+    means = [in_blocks(part, block).mean(axis=1) for part in parts]
     mean, std = mean_of_stretches(
         [float(part.mean()) for part in means],
         [float(part.std(ddof=1) / np.sqrt(part.size)) for part in means],

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import FloatArray, frozen_float, in_blocks
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._excitations import Sine
 from shaftprint.digits import in_nm
@@ -196,7 +196,7 @@ def expect_one_sign(torque_nm: FloatArray, sensor: ShaftTorqueSensor, *, rate_hz
     Raises SignalError if it does; the message says when.
     """
     length = max(round(rate_hz), 1)
-    seconds = torque_nm[: torque_nm.size - torque_nm.size % length].reshape(-1, length).mean(axis=1)
+    seconds = in_blocks(torque_nm, length).mean(axis=1)
     if not seconds.size:
         return
     clear = _CLEAR * float(np.median(np.abs(seconds)))

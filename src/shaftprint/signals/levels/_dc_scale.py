@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.arrays import ComplexArray, FloatArray, in_blocks
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._excitations import Sine
 from shaftprint.digits import stated
@@ -196,9 +196,8 @@ def period_amplitudes(values: FloatArray, sine: Sine, rate_hz: float, start_s: f
     # means of blocks: what they take from the sine they take from set point and speed alike
     length = max(int(rate_hz / (_BLOCKS_A_PERIOD * sine.frequency_hz)), 1)
     first, stop = (math.ceil((instant - start_s) * rate_hz - 1e-9) for instant in (sine.settled_s, sine.window_stop_s))
-    blocks = (stop - first) // length
-    part = values[first : first + blocks * length].reshape(blocks, length).mean(axis=1)
-    time = start_s + (first + length * np.arange(blocks)) / rate_hz - sine.settled_s
+    part = in_blocks(values[first:stop], length).mean(axis=1)
+    time = start_s + (first + length * np.arange(part.size)) / rate_hz - sine.settled_s
     phase = 2.0 * np.pi * sine.frequency_hz * time
     waves = [wave(order * phase) for order in _ORDERS for wave in (np.cos, np.sin)]
     design = np.column_stack([*waves, np.ones(time.size), time])

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray, IntArray
+from shaftprint.arrays import BoolArray, FloatArray, IntArray, in_blocks
 
 # Rate at which torque and speed are compared [Hz]: faster, the shaft twists.
 _RATE_HZ = 20.0
@@ -238,8 +238,7 @@ def _slopes(values: FloatArray, rate_hz: float) -> FloatArray:
 
 
 def _means(values: FloatArray, step: int) -> FloatArray:
-    count = values.size // step
-    return np.asarray(values[: count * step].reshape(count, step).mean(axis=1))
+    return np.asarray(in_blocks(values, step).mean(axis=1))
 
 
 def _lags(values: FloatArray, rate_hz: float) -> list[FloatArray]:

@@ -13,7 +13,7 @@ disturbance is the wander, of which nothing is known beforehand (``_wander.py``)
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import BoolArray, FloatArray, in_blocks
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals.levels._wander import fit_through_wander
 
@@ -62,8 +62,8 @@ def _blocks(
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Return torque over the mean square of the speed and the columns of the line of some blocks, and of which."""
     count = speed.size // length
-    parts = speed[: count * length].reshape(count, length)
-    torque = torque_nm[: count * length].reshape(count, length).mean(axis=1)
+    parts = in_blocks(speed, length)
+    torque = in_blocks(torque_nm, length).mean(axis=1)
     # block by block, as the speed is as long as the recording
     square = np.array([np.mean(part**2) for part in parts])
     near = whole & (parts.max(axis=1) - 1.0 <= REACH) & (1.0 - parts.min(axis=1) <= REACH)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import BoolArray, FloatArray, in_blocks
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._excitations import Chirp, Sine
 from shaftprint.campaign._leg import Leg
@@ -66,11 +66,11 @@ def steady_stretches(
     sines, legs and chirps are. ``rate_hz``, ``start_s``: the grid. ``coverage``: says where the gaps are.
     """
     length = round(_BLOCK_S * rate_hz)
-    means = [_block_means(values, length) for values in (set_point_v, speed_rev_s, torque_nm)]
+    means = [in_blocks(values, length).mean(axis=1) for values in (set_point_v, speed_rev_s, torque_nm)]
     starts = start_s + np.arange(means[0].size) * length / rate_hz
     complete = _without_gaps(starts, length / rate_hz, coverage)
     tolerance = _TOLERANCE * float(np.ptp(means[0][complete])) if complete.any() else 0.0
-    still = (_block_spread(set_point_v, length) <= tolerance) & complete
+    still = (in_blocks(set_point_v, length).std(axis=1) <= tolerance) & complete
     still &= _outside_waves(starts, length / rate_hz, campaign)
     moved = np.abs(np.diff(means[0], prepend=means[0][:1])) > tolerance
     settled = [_settled(run, means[1]) for run in _runs(still, moved)]
@@ -98,18 +98,6 @@ def _settled(run: tuple[int, int], speed: FloatArray) -> tuple[int, int] | None:
         return None
     first += _settling(speed[first:stop])
     return (first, stop) if stop - first >= _SHORTEST_SETTLED_S else None
-
-
-def _block_means(values: FloatArray, length: int) -> FloatArray:
-    used = values.size - values.size % length
-    means: FloatArray = values[:used].reshape(-1, length).mean(axis=1)
-    return means
-
-
-def _block_spread(values: FloatArray, length: int) -> FloatArray:
-    used = values.size - values.size % length
-    spread: FloatArray = values[:used].reshape(-1, length).std(axis=1)
-    return spread
 
 
 def _outside_waves(starts: FloatArray, length_s: float, campaign: Campaign) -> BoolArray:
@@ -163,7 +151,7 @@ def _means(values: FloatArray, runs: list[tuple[int, int]]) -> list[tuple[float,
     for run in runs:
         inside = values[slice(*run)]
         batch = min(_BATCH_BLOCKS, inside.size // 2)
-        batches = inside[: inside.size - inside.size % batch].reshape(-1, batch).mean(axis=1)
+        batches = in_blocks(inside, batch).mean(axis=1)
         densities.append(float(np.var(batches, ddof=1)) * batch)
         freedoms.append(batches.size - 1)
     density, freedom = np.array(densities), np.array(freedoms)

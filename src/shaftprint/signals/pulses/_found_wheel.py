@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, IntArray
+from shaftprint.arrays import BoolArray, IntArray, in_blocks, runs_of
 from shaftprint.vessel._wheel import Wheel
 
 # Faults are random; of what belongs to a wheel so much comes back after a turn.
@@ -36,7 +36,7 @@ def recurring_wheel(place: IntArray, spaces: IntArray) -> Wheel | None:
 
 def recurring_places(marks: BoolArray, places: int) -> BoolArray:
     """Return which places of a wheel are marked in most turns, shape (places,)."""
-    turns = marks[: marks.size - marks.size % places].reshape(-1, places)
+    turns = in_blocks(marks, places)
     recurring: BoolArray = turns.mean(axis=0) > RECURRING
     return recurring
 
@@ -46,9 +46,8 @@ def gaps_of(empty: BoolArray) -> tuple[int, ...]:
     if not empty.any() or empty.all():
         return ()
     first = int(np.flatnonzero(~empty & np.roll(empty, 1))[0])
-    edges = np.diff(np.concatenate([[0], np.roll(empty, -first).astype(np.int64), [0]]))
-    sizes = np.flatnonzero(edges == -1) - np.flatnonzero(edges == 1)
-    turned = [tuple(np.roll(sizes, -k).tolist()) for k in range(sizes.size)]
+    sizes = [stop - begin for begin, stop in runs_of(np.roll(empty, -first))]
+    turned = [(*sizes[k:], *sizes[:k]) for k in range(len(sizes))]
     return max(turned)
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, in_blocks
 from shaftprint.reasons import Reason
 from shaftprint.units import PERCENT
 
@@ -191,7 +191,7 @@ def sine_frequency_hz(values: FloatArray, rate_hz: float, near_hz: float) -> flo
     """
     block = max(int(rate_hz / (_SAMPLES_A_PERIOD * near_hz)), 1)
     count = values.size // block
-    means = values[: count * block].reshape(count, block).mean(axis=1)
+    means = in_blocks(values, block).mean(axis=1)
     time = np.arange(count) * (block / rate_hz)
     bin_hz = rate_hz / (count * block)
     tapered = (means - means.mean()) * np.hanning(count)

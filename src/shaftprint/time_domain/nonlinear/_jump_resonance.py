@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray, frozen_bool
+from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, runs_of
 from shaftprint.time_domain._noise_model import NoiseModel
 from shaftprint.time_domain._output_error import OutputError
 from shaftprint.time_domain._simulator import on_record
@@ -71,10 +71,9 @@ def without_jumps(term: OutputError, values: FloatArray, rng: np.random.Generato
 
 def jump_stretches(name: str, time_s: FloatArray, left_out: BoolArray) -> tuple[JumpStretch, ...]:
     """Return the stretches of a record that were left out, in order of time."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], left_out, [False]])))
     return tuple(
         JumpStretch(record=name, begin_s=float(time_s[begin]), end_s=float(time_s[end - 1]))
-        for begin, end in zip(edges[::2], edges[1::2], strict=True)
+        for begin, end in runs_of(left_out)
     )
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from shaftprint.arguments import refusing_none
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, in_blocks
 from shaftprint.errors import RecordingError, SettingsError
 from shaftprint.files import reason, written_whole
 from shaftprint.recording._channel import Channel
@@ -182,9 +182,7 @@ def _load_of(path: Path, names: Channels) -> Load:
         means = []
         for name in (names.speed, names.torque):
             channel = recording.channels[name]
-            every = round(channel.rate_hz)
-            seconds = channel.count // every
-            means.append(channel.values(0, seconds * every).reshape(seconds, every).mean(axis=1))
+            means.append(in_blocks(channel.values(0, channel.count), round(channel.rate_hz)).mean(axis=1))
     seconds = min(one.size for one in means)
     speed, torque = (one[:seconds] for one in means)
     with np.errstate(divide="ignore", invalid="ignore"):
