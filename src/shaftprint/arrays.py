@@ -50,6 +50,13 @@ def known_part(covariance: FloatArray) -> FloatArray:
     return np.where(lost[:, None] | lost[None, :], 0.0, covariance)
 
 
+def correlation_of(covariance: FloatArray) -> FloatArray:
+    """Return the correlation of a covariance; nan where a variance is infinite."""
+    std = np.sqrt(np.diag(covariance))
+    std[np.isinf(std)] = np.nan
+    return np.asarray(covariance / np.outer(std, std))
+
+
 def in_blocks(values: NDArray[_Kind], length: int) -> NDArray[_Kind]:
     """Return values in blocks of one length, shape (blocks, length); what is left at the end does not count."""
     count = values.size // length

@@ -81,6 +81,18 @@ class Fitted:
         return np.array([1.0 / self.priors[name].std if name in self.priors else 0.0 for name in names])
 
 
+def scaled_information(slopes: FloatArray, known: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return information over the roots of its diagonal, shape (free, free), and these roots, shape (free,).
+
+    What the data say nothing of has a root of 1: it follows nothing. ``slopes``: derivatives of the residuals, shape
+    (free, residuals). ``known``: one over the prior deviation of each, shape (free,).
+    """
+    information = slopes @ slopes.T + np.diag(known**2)
+    size = np.sqrt(np.diag(information))
+    size = np.where(size > 0.0, size, 1.0)
+    return information / np.outer(size, size), size
+
+
 def values_without_limits(whole: Structure) -> dict[str, float]:
     """Return the value of every parameter of a governor that nothing limits."""
     default = {p.name: p.value for p in whole.parameters}

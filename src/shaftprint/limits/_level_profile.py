@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.distributions import NORMAL_95
-from shaftprint.limits._governor_fit import Fitted, fitted
+from shaftprint.limits._governor_fit import Fitted, fitted, scaled_information
 from shaftprint.limits._uncertainty import LevelScatter
 
 # Steps towards the end of a profile, and how near the end they must come, as a share of the threshold.
@@ -104,15 +104,12 @@ def _better_start(fit: Fitted, *starts: Mapping[str, float]) -> Mapping[str, flo
 
 def _followers(fit: Fitted, name: str) -> Mapping[str, float]:
     """Return how the other free parameters follow one along its profile, to first order: where its fits begin."""
-    rows, known = fit.term.rows(fit.own), fit.known
+    rows = fit.term.rows(fit.own)
     if rows is None:
         return {}
     names = [p.name for p in fit.term.structure.free]
-    normal = rows[1:] @ rows[1:].T + np.diag(known**2)
-    size = np.sqrt(np.diag(normal))
-    size = np.where(size > 0.0, size, 1.0)
+    scaled, size = scaled_information(rows[1:], fit.known)
     row = names.index(name)
     others = [place for place in range(len(names)) if place != row]
-    scaled = normal / np.outer(size, size)
     slopes = -np.linalg.pinv(scaled[np.ix_(others, others)], hermitian=True) @ scaled[others, row]
     return {names[place]: float(slope * size[row] / size[place]) for place, slope in zip(others, slopes, strict=True)}

@@ -7,7 +7,7 @@ governor by ``S = -I_ll^-1 I_lg``, by which the errors of both are related.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from shaftprint.limits._governor_fit import (
     Fitted,
     fitted,
     identified,
+    scaled_information,
     schwarz,
     values_without_limits,
 )
@@ -138,12 +139,7 @@ def _slopes(fit: Fitted, names: Sequence[str], governor: Sequence[str]) -> Float
     rows = term.with_scale_at(fit.own).rows(fit.own)
     if rows is None:
         raise IdentificationError(f"{term.name}: the simulation runs away where it was fitted.")
-    known = np.array([1.0 / fit.priors[name].std if name in fit.priors else 0.0 for name in order])
-    information = rows[1:] @ rows[1:].T + np.diag(known**2)
-    size = np.sqrt(np.diag(information))
-    # what the data say nothing of follows nothing
-    size = np.where(size > 0.0, size, 1.0)
-    scaled = information / np.outer(size, size)
+    scaled, size = scaled_information(rows[1:], replace(fit, term=term).known)
     own, others = [order.index(name) for name in free], [order.index(name) for name in governor]
     follows = -np.linalg.pinv(scaled[np.ix_(own, own)], hermitian=True) @ scaled[np.ix_(own, others)]
     slopes = follows / size[own][:, None] * size[others]

@@ -108,10 +108,7 @@ async def expect_revert(ground: Ground, counterpart: "Counterpart") -> float:
         last = await ground.next()
     if ground.unanswered_s > MISSING_S or not last.block.device.heartbeat:
         raise LiveError(f"{name}: expected the heartbeat back within {MISSING_S:g} s, found none.")
-    await counterpart.take()
-    last = await _reached(ground, DeviceMode.HELD)
-    if last.block.device.mode is not DeviceMode.HELD:
-        raise LiveError(f'{name}: expected it to take the set point over, found "{last.block.device.mode}".')
+    last = await _taken(ground, counterpart)
     ground.beats = False
     stopped_s = last.time_s
     while True:
@@ -156,11 +153,7 @@ async def taken_over(
         last = await ground.next()
     if not last.block.device.is_enabled:
         raise LiveError(f"{name}: expected the key on the bridge to be on, found it off.")
-    await counterpart.take()
-    last = await _reached(ground, DeviceMode.HELD)
-    if last.block.device.mode is not DeviceMode.HELD:
-        raise LiveError(f'{name}: expected it to take the set point over, found "{last.block.device.mode}".')
-    return last
+    return await _taken(ground, counterpart)
 
 
 def _share_of_one(speeds: "FloatArray") -> float:
@@ -185,9 +178,17 @@ def _longest_repetition_s(sights: "list[Sight]", channel: str) -> float:
     return longest_s
 
 
-async def _reached(ground: Ground, mode: DeviceMode) -> "Sight":
-    """Return the block that shows a mode, or the last one within the time for it."""
+async def _taken(ground: Ground, counterpart: "Counterpart") -> "Sight":
+    """Take the set point over, and return the block that shows it.
+
+    Raises LiveError if none does in time.
+    """
+    await counterpart.take()
     last = first = await ground.next()
-    while last.block.device.mode is not mode and last.time_s - first.time_s < _ANSWER_S:
+    while last.block.device.mode is not DeviceMode.HELD and last.time_s - first.time_s < _ANSWER_S:
         last = await ground.next()
+    if last.block.device.mode is not DeviceMode.HELD:
+        raise LiveError(
+            f'{counterpart.name}: expected it to take the set point over, found "{last.block.device.mode}".'
+        )
     return last

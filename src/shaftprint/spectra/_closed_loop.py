@@ -7,6 +7,7 @@ import numpy as np
 from shaftprint.errors import ResponseError
 from shaftprint.spectra._conversion import converted, without_lines
 from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._open_loop import expect_not_zero
 from shaftprint.spectra._response_covariance import weight_change
 
 # Of a reciprocal the first orders of the noise are not enough: in simulated loops the mean square of the errors over
@@ -51,9 +52,7 @@ def plant_from_closed_loop(
         )
     joint = response.of_outputs(input, *outputs)
     u, y = joint.response[0, 0], joint.response[1:, 0]
-    if np.any(u == 0.0):
-        line = joint.lines[int(np.argmax(u == 0.0))]
-        raise ResponseError(f"{line}: expected {input} to differ from 0, found 0: leave the line out.")
+    expect_not_zero(joint, input, u)
     plant = y / u
     identity = np.broadcast_to(np.eye(len(outputs)), (u.size, len(outputs), len(outputs)))
     jacobian = np.concatenate([-plant.T[:, :, np.newaxis], identity], axis=2) / u[:, np.newaxis, np.newaxis]

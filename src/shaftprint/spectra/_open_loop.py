@@ -46,8 +46,8 @@ def open_loop(
     if response.outputs != ("n", "M_s"):
         response = response.of_outputs("n", "M_s")
     error = np.exp(-1j * response.omega_rad_s * set_point_latency_s) - outputs["n"]
-    _expect_not_zero(response, "e", error)
-    _expect_not_zero(response, "M_s", outputs["M_s"])
+    expect_not_zero(response, "e", error)
+    expect_not_zero(response, "M_s", outputs["M_s"])
     governor = outputs["M_s"] / error
     core = outputs["n"] / outputs["M_s"]
     return (
@@ -75,8 +75,8 @@ def governor_and_engine(
     """
     outputs = _expected(response, "n", "M_s", "X")
     error = np.exp(-1j * response.omega_rad_s * set_point_latency_s) - outputs["n"]
-    _expect_not_zero(response, "e", error)
-    _expect_not_zero(response, "X", outputs["X"])
+    expect_not_zero(response, "e", error)
+    expect_not_zero(response, "X", outputs["X"])
     governor = outputs["X"] / error
     engine = outputs["M_s"] / outputs["X"]
     heard = _without_lost_lines(response, response, outputs["X"], signal="X")
@@ -99,7 +99,11 @@ def _expected(response: FrequencyResponse, *names: str) -> dict[str, ComplexArra
     return {name: response.response[response.outputs.index(name), 0] for name in names}
 
 
-def _expect_not_zero(response: FrequencyResponse, name: str, values: ComplexArray) -> None:
+def expect_not_zero(response: FrequencyResponse, name: str, values: ComplexArray) -> None:
+    """Refuse a channel that is 0 at a line: nothing can be divided by it.
+
+    Raises ResponseError if there is such a line.
+    """
     if np.any(values == 0.0):
         line = response.lines[int(np.argmax(values == 0.0))]
         raise ResponseError(f"{line}: expected {name} to differ from 0, found 0: leave the line out.")

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
+from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, correlation_of
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._covariance import variance_along
 from shaftprint.identify.fit._estimate import Estimate
@@ -213,9 +213,7 @@ class Identification(Shown, Labelled):
     @property
     def correlation(self) -> FloatArray:
         """Correlation of the free parameters, shape (free, free); nan where a variance is infinite."""
-        std = np.sqrt(np.diag(self.covariance))
-        std[np.isinf(std)] = np.nan
-        return np.asarray(self.covariance / np.outer(std, std))
+        return correlation_of(self.covariance)
 
     @property
     def margins(self) -> Margins | None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import FloatArray, correlation_of, frozen_float
 from shaftprint.digits import stated
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._covariance import known_covariance, known_variance
@@ -54,9 +54,7 @@ class Accuracy(Shown):
     @property
     def correlation(self) -> FloatArray:
         """Correlation of the free parameters, shape (free, free); nan where a variance is infinite."""
-        std = np.sqrt(np.diag(self.covariance))
-        std[np.isinf(std)] = np.nan
-        return np.asarray(self.covariance / np.outer(std, std))
+        return correlation_of(self.covariance)
 
     @property
     def numbers(self) -> tuple[Estimate, ...]:

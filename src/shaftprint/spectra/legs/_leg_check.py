@@ -7,7 +7,6 @@ import numpy as np
 
 from shaftprint.reasons import Reason
 from shaftprint.spectra.legs._leg_lines import LegLines
-from shaftprint.spectra.lines._line_measurement import LineMeasurement
 from shaftprint.spectra.lines._set_point_check import amplitude_remark
 from shaftprint.units import PERCENT
 
@@ -49,7 +48,7 @@ def check_leg(measured: LegLines, *, expected: "FloatArray", moved: "ExcitationS
         if amplitude < _SILENT_SHARE * asked:
             silent[name] = f"left out: {amplitude_remark(amplitude, asked, moved)}"
             continue
-        disturbed = _disturbed_periods(line)
+        disturbed = line.disturbed_stretches(_PERIOD_TOLERANCE)
         if abs(amplitude - asked) > _AMPLITUDE_TOLERANCE * asked:
             remarks[name] = amplitude_remark(amplitude, asked, moved)
         elif disturbed.any():
@@ -100,12 +99,3 @@ def leg_shape_reasons(measured: LegLines) -> tuple[Reason, ...]:
             ),
         ),
     )
-
-
-def _disturbed_periods(line: LineMeasurement) -> "np.ndarray[tuple[int, ...], np.dtype[np.bool_]]":
-    amplitude = np.abs(line.excited_stretches)
-    typical = np.median(amplitude)
-    disturbed: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = (
-        np.abs(amplitude - typical) > _PERIOD_TOLERANCE * typical
-    )
-    return disturbed

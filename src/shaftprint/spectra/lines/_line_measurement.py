@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.spectra.lines._message_line import MessageLine, MessageWindow, measure_messages
 from shaftprint.spectra.lines._modulation import without_modulation
 from shaftprint.spectra.lines._noise import LineNoise, ShaftRelation, line_noise, residual_spectrum
@@ -80,6 +80,12 @@ class LineMeasurement:
         """Amplitude of the excitation in each stretch, shape (stretches,)."""
         stretches: ComplexArray = self.stretches[self.channels.index(self.excitation)]
         return stretches
+
+    def disturbed_stretches(self, tolerance: float) -> BoolArray:
+        """Return in which stretches the excitation is larger or smaller than usual by a share, shape (stretches,)."""
+        amplitude = np.abs(self.excited_stretches)
+        typical = np.median(amplitude)
+        return np.asarray(np.abs(amplitude - typical) > tolerance * typical)
 
     def variances_with(self, *names: str) -> LineVariances:
         """Return variances of all channels and of some on clocks of their own; not numbers where not measured."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.errors import ResponseError
 from shaftprint.reasons import Reason
 from shaftprint.spectra.lines._stretches import stretch_periods
@@ -82,7 +82,7 @@ def check_set_point(
         return SetPointFinding(remarks=(_wrong_sine(line, amplitude, expected, moved),), usable=False)
     if amplitude < _UNEXCITED_SHARE * expected:
         return SetPointFinding(remarks=(amplitude_remark(amplitude, expected, moved),), usable=False)
-    disturbed = _disturbed_stretches(line)
+    disturbed = line.disturbed_stretches(_STRETCH_TOLERANCE)
     if np.any(disturbed):
         usable = bool(disturbed.mean() < _STRETCH_LIMIT)
         return SetPointFinding(remarks=(_stretch_remark(line, disturbed),), usable=usable)
@@ -172,16 +172,7 @@ def _frequency_offset_hz(line: "LineMeasurement") -> float:
     return slope_rad / (2.0 * np.pi * _stretch_s(line))
 
 
-def _disturbed_stretches(line: "LineMeasurement") -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    amplitude = np.abs(line.excited_stretches)
-    typical = np.median(amplitude)
-    disturbed: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = (
-        np.abs(amplitude - typical) > _STRETCH_TOLERANCE * typical
-    )
-    return disturbed
-
-
-def _stretch_remark(line: "LineMeasurement", disturbed: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> str:
+def _stretch_remark(line: "LineMeasurement", disturbed: BoolArray) -> str:
     length_s = _stretch_s(line)
     indices = np.flatnonzero(disturbed)
     first_s = line.window.start_s + length_s * indices[0]
