@@ -1,11 +1,11 @@
 """The profile of the level of a limit: one that acts for seconds bends its likelihood."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from shaftprint.distributions import NORMAL_95
+from shaftprint.identify.uncertainty._profile import Interval
 from shaftprint.limits._governor_fit import Fitted, fitted, scaled_information
 from shaftprint.limits._uncertainty import LevelScatter
 
@@ -14,21 +14,7 @@ MOST_STEPS, NEAR = 4, 0.1
 PROFILE_ITERATIONS = 12
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class LevelInterval:
-    """95 % interval of one number."""
-
-    lower: float
-    """Lower end."""
-    upper: float
-    """Upper end."""
-    lower_open: bool
-    """Whether the data set no lower end."""
-    upper_open: bool
-    """Whether the data set no upper end."""
-
-
-def profile_interval(fit: Fitted, spread: LevelScatter, name: str) -> LevelInterval:
+def profile_interval(fit: Fitted, spread: LevelScatter, name: str) -> Interval:
     """Return the profile-likelihood interval of one parameter, widened by scatter and by what was taken for granted."""
     row = spread.names.index(name)
     parameter = next(p for p in fit.term.structure.free if p.name == name)
@@ -41,7 +27,7 @@ def profile_interval(fit: Fitted, spread: LevelScatter, name: str) -> LevelInter
         noise = end - value
         ends.append(value + side * float(np.hypot(noise, NORMAL_95 * spread.systematic[row])))
         is_open.append(free)
-    return LevelInterval(lower=ends[0], upper=ends[1], lower_open=is_open[0], upper_open=is_open[1])
+    return Interval(name=name, lower=ends[0], upper=ends[1], lower_open=is_open[0], upper_open=is_open[1])
 
 
 def _end(fit: Fitted, name: str, value: float, std: float, reach: float, bound: float) -> tuple[float, bool]:

@@ -9,9 +9,10 @@ import numpy as np
 from shaftprint.catalogue._limited_governor import GovernorSymbol
 from shaftprint.distributions import NORMAL_95
 from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.identify.uncertainty._profile import Interval
 from shaftprint.limits._candidates import CANDIDATES, Kind, LimitCandidate
 from shaftprint.limits._governor_fit import GOVERNOR, Fitted
-from shaftprint.limits._level_profile import LevelInterval, profile_interval
+from shaftprint.limits._level_profile import profile_interval
 from shaftprint.limits._set_point_quantum import Quantum
 from shaftprint.limits._uncertainty import LevelScatter
 from shaftprint.limits.prediction._held_set_point import Messages
@@ -276,7 +277,7 @@ def _of_set_point(
 ) -> Estimate:
     """Return a number of the set point, from lower end, value and upper end; it has no parameter of the governor."""
     lower, value, upper = ends
-    interval = LevelInterval(lower=lower, upper=upper, lower_open=False, upper_open=False)
+    interval = Interval(name=scale.name, lower=lower, upper=upper, lower_open=False, upper_open=False)
     return Estimate(
         limit=kind.value,
         name=scale.name,
@@ -294,7 +295,7 @@ def _widened(value: float, end: float, more: float) -> float:
     return value + float(np.sign(end - value) * np.hypot(end - value, more))
 
 
-def _doubt(value: float, interval: LevelInterval, *, at_bound: bool) -> str:
+def _doubt(value: float, interval: Interval, *, at_bound: bool) -> str:
     """Return why a number is not trusted; nothing where it is."""
     if at_bound:
         return "at its bound: the search stopped there"

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue._gauge import GAUGE_K_P
 from shaftprint.catalogue._roles import ROLES, ShipRole
 from shaftprint.fingerprint._joint_numbers import JointNumbers
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.likelihood._known import stated_by_vessel
 from shaftprint.identify.uncertainty._budget import BudgetRow
+from shaftprint.models._combination import Combination
 from shaftprint.models._role import Role
 from shaftprint.models._structure import Structure
 from shaftprint.normalisation import Normalisation
@@ -43,9 +43,9 @@ class ShipNumber:
     """Its change for one unit of each free parameter, shape (free,)."""
     meaning: str
     """What it stands for."""
-    role: Role | None
+    role: Role | None = None
     """What it is in the line."""
-    direct: Mapping[str, float]
+    direct: Mapping[str, float] = MappingProxyType({})
     """Its change, with sign, for one standard deviation of a source that enters the conversion."""
     expected: tuple[float, float] | None = None
     """Value and standard deviation by the vessel file."""
@@ -62,54 +62,38 @@ def parameter_numbers(structure: Structure, theta: FloatArray) -> list[ShipNumbe
             slope=np.eye(len(FREE))[k],
             meaning=about[name].meaning,
             role=about[name].role,
-            direct={},
         )
         for k, name in enumerate(FREE)
     ]
 
 
-def _sloped(of: "Mapping[str, FloatArray]", theta: FloatArray) -> dict[str, FloatArray]:
-    """Return parameter sets for a value and its slopes, by name, each of shape (1 + 2 free,)."""
+def _combined(one: Combination, theta: FloatArray, held: Mapping[str, float]) -> ShipNumber:
+    """Return a combination of the parameters, its slopes from differences."""
     steps = _STEP * np.maximum(np.abs(theta), 1e-2)
     table = np.concatenate([theta[None], theta + np.diag(steps), theta - np.diag(steps)])
     sets = {name: table[:, k] for k, name in enumerate(FREE)}
-    return sets | {name: np.full(len(table), float(value)) for name, value in of.items()}
-
-
-def _value_and_slope(values: FloatArray, theta: FloatArray) -> tuple[float, FloatArray]:
-    steps = _STEP * np.maximum(np.abs(theta), 1e-2)
-    free = theta.size
-    return float(values[0]), (values[1 : 1 + free] - values[1 + free :]) / (2.0 * steps)
+    sets |= {name: np.full(len(table), float(value)) for name, value in held.items()}
+    values = np.broadcast_to(one.of(sets), len(table))
+    return ShipNumber(
+        name=one.name,
+        unit=one.unit,
+        value=float(values[0]),
+        slope=(values[1 : 1 + theta.size] - values[1 + theta.size :]) / (2.0 * steps),
+        meaning=one.meaning,
+        role=one.role,
+    )
 
 
 def combination_numbers(structure: Structure, theta: FloatArray, held: Mapping[str, float]) -> list[ShipNumber]:
     """Return the combinations of the structure."""
-    sets = _sloped({name: np.asarray(value) for name, value in held.items()}, theta)
-    numbers = []
-    for one in structure.combinations:
-        value, slope = _value_and_slope(np.broadcast_to(one.of(sets), sets[GAUGE_K_P.name].shape), theta)
-        numbers.append(
-            ShipNumber(
-                name=one.name, unit=one.unit, value=value, slope=slope, meaning=one.meaning, role=one.role, direct={}
-            )
-        )
-    return numbers
+    return [_combined(one, theta, held) for one in structure.combinations]
 
 
 def margin_numbers_of(structure: Structure, theta: FloatArray, held: Mapping[str, float]) -> list[ShipNumber]:
     """Return the stability margins."""
     vector = structure.vector(dict(zip(FREE, theta.tolist(), strict=True)) | dict(held))
-    sets = _sloped({name: np.asarray(value) for name, value in held.items()}, theta)
-    numbers = []
-    for one in margin_numbers(structure, vector):
-        value, slope = _value_and_slope(one.of(sets), theta)
-        if np.all(np.isfinite(slope)):
-            numbers.append(
-                ShipNumber(
-                    name=one.name, unit=one.unit, value=value, slope=slope, meaning=one.meaning, role=None, direct={}
-                )
-            )
-    return numbers
+    numbers = (_combined(one, theta, held) for one in margin_numbers(structure, vector))
+    return [one for one in numbers if np.all(np.isfinite(one.slope))]
 
 
 def physical_numbers_of(

@@ -144,17 +144,9 @@ def stretch_of(traces: Traces, forces: Forces, *, first: int, start_s: float, st
     count = traces.limited.size
     return Stretch(
         time_s=start_s + step_s * np.arange(first, first + count, dtype=np.float64),
-        shaft_speed_rev_s=traces.shaft_speed_rev_s,
-        shaft_angle_rev=traces.shaft_angle_rev,
-        engine_speed_rev_s=traces.engine_speed_rev_s,
-        engine_angle_rev=traces.engine_angle_rev,
-        shaft_torque_nm=traces.shaft_torque_nm,
-        brake_torque_nm=traces.brake_torque_nm,
-        rack_given=traces.rack_given,
-        limited=traces.limited,
+        **traces._asdict(),
         machine_nm=forces.machine[: 2 * count : 2],
         pitch_change=forces.pitch.piston[: 2 * count : 2],
-        ship_speed_m_s=traces.ship_speed_m_s,
         demand_rev_s=forces.asked[: 2 * count : 2],
     )
 
