@@ -1,7 +1,7 @@
 """Numbers that follow from the parameters of a service fit: what they are worth, and where their errors come from."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -45,7 +45,7 @@ class ShipNumber:
     """What it stands for."""
     role: Role | None = None
     """What it is in the line."""
-    direct: Mapping[str, float] = MappingProxyType({})
+    direct: Mapping[str, float] = field(default_factory=dict)
     """Its change, with sign, for one standard deviation of a source that enters the conversion."""
     expected: tuple[float, float] | None = None
     """Value and standard deviation by the vessel file."""
