@@ -56,6 +56,13 @@ def test_a_gauge_that_shows_too_little_is_told_by_the_torque_over_the_square_of_
     assert "diameter_m = 1.05 is stated, 1.03 would fit" in reason.sentence
 
 
+@pytest.mark.parametrize(("share", "kinds"), [(0.2, ["gauge scale"]), (12.0, ["gauge scale", "gauge line"])])
+def test_a_gauge_that_bends_is_no_scale_alone(share, kinds):
+    """What shows 0.9 of inertia and torque, and 0.88 of the slope of the load, is off in the slope of its line."""
+    zero = Estimate(name="gauge zero share", unit="%", value=share, std=0.2)
+    assert [one.kind for one in _reasons_of((*_numbers(0.9, TUG), zero), TUG, 0.9)] == kinds
+
+
 @pytest.mark.parametrize(("factor", "doubts"), [(0.9, 0), (1.12, 0), (2.0, 1)])
 def test_a_coefficient_of_a_propeller_series_contradicts_nothing_within_what_it_is_known_to(factor, doubts):
     propeller = TUG.propeller.model_copy(update={"torque_coefficient_std": 0.15 * TUG.propeller.torque_coefficient})

@@ -52,13 +52,14 @@ def contradictions(
     named = {quantity.name: quantity for quantity in physical}
     off = _by_a_factor(named, signals, vessel, campaign) or _hidden_inertia(named.get("I_dn"), vessel)
     zero = named.get(GAUGE_ZERO)
-    if off or zero is None:
+    if zero is None:
         return off
     torque_nm = signals.working_point.shaft_torque_nm
     by_slope = not signals.legs or zero_between([leg.working_point for leg in signals.legs]) is None
     found = zero_of_share(zero.value / PERCENT, zero.std / PERCENT, torque_nm)
     doubt = zero_reason(*found, torque_nm, vessel, by_slope=by_slope)
-    return () if doubt is None else (doubt,)
+    # a scale alone leaves the slope of the load as it is
+    return off if doubt is None else (*off, doubt)
 
 
 def _hidden_inertia(inertia: Estimate | None, vessel: "Vessel") -> tuple[Reason, ...]:

@@ -42,7 +42,10 @@ AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
     "set-point scale": (ALL - {"speed"}, "it depends on the scale of the set point"),
     "prior": (ALL - {"speed", "set point"}, "it depends on a prior that the data contradict"),
     "record": (ALL, "it depends on how its records were taken"),
-    "gauge line": (frozenset(("torque", "level")), "it depends on the zero of the torque gauge, or on its line"),
+    "gauge line": (
+        frozenset(("torque", "level", "load")),
+        "it depends on the zero of the torque gauge, or on its line",
+    ),
     "gauge zero": (frozenset(("level",)), "it depends on the zero of the torque gauge"),
     "gear ratio": (frozenset(("torque", "governor")), "it depends on the gear ratio"),
     "propeller": (frozenset(("size",)), "it depends on the diameter of the propeller"),
