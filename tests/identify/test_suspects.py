@@ -208,6 +208,26 @@ def test_a_joint_fit_is_asked_as_a_whole(data):
     assert together.std == pytest.approx(alone.std / np.sqrt(2.0), rel=1e-3)
 
 
+def test_the_suspect_may_be_in_the_second_of_two_responses_with_fewer_lines():
+    """As on a line whose speed and whose machine are moved in turn, at other lines."""
+    parts = []
+    for name, given, late_s, frequency in (("y", "u", 0.0, [0.1, 0.5, 1.0, 2.0]), ("z", "w", 0.01, [0.2, 0.8, 1.5])):
+        gain = Parameter(f"k_{name}", "-", 0.1, 5.0, 1.0, "test")
+        omega = 2.0 * np.pi * np.array(frequency)
+        response = FrequencyResponse(
+            frequency_hz=np.array(frequency),
+            response=(2.0 * np.exp(-1j * omega * late_s))[None, None],
+            covariance=np.tile(1e-4 * np.eye(2), (omega.size, 1, 1)),
+            inputs=(given,),
+            outputs=(name,),
+        )
+        parts.append((Structure(name=name, title="", input=given, outputs={name: Gain(gain)}), response))
+    (found,) = suspects_of(identify_jointly(parts, rng=np.random.default_rng(1)))
+    assert found.words == "z comes late"
+    assert found.estimate == pytest.approx(0.01, rel=0.01)
+    assert not found.rough
+
+
 @pytest.mark.parametrize(
     ("scatter", "kinds"), [(0.0, ["prior", "misfit", "suspect"]), (0.3, ["misfit", "prior", "suspect"])]
 )

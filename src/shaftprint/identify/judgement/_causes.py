@@ -38,6 +38,8 @@ class Cause:
     """Whether only a positive size makes sense: a sensor is late, not early."""
     clock: str = ""
     """Channel whose clock it is that runs apart; empty where it is no clock."""
+    share: float = 0.0
+    """Largest share by which a size of 1 changes the response of a line, once it is known beside the model."""
 
 
 def causes_of(experiment: Experiment, values: FloatArray) -> tuple[Cause, ...]:

@@ -6,7 +6,7 @@ best is taken along, then the next best is looked for. These are hints: causes t
 cannot be told apart, and sizes are right to first order.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -96,7 +96,7 @@ def suspects_of(identification: Identification, *, rejected: float = REJECTED) -
                 std=float(1.0 / lengths[best]),
                 unit=cause.unit,
                 share=float(falls[best] / beyond),
-                rough=_changes(identification, cause, estimate) > FIRST_ORDER,
+                rough=abs(estimate) * cause.share > FIRST_ORDER,
             )
         )
         along = across[best] / lengths[best]
@@ -110,12 +110,6 @@ def is_gross(identification: Identification) -> bool:
     if not identification.is_likelihood or identification.objective.others:
         return False
     return identification.chi_square > GROSS * identification.degrees_of_freedom
-
-
-def _changes(identification: Identification, cause: Cause, size: float) -> float:
-    """Return the largest share by which a cause of some size changes the first response."""
-    model = identification.objective.experiments[0].model(identification.values)
-    return float(np.max(np.abs(size * cause.effect) / np.abs(model)))
 
 
 def misfit_of(identification: Identification) -> tuple[FloatArray, FloatArray]:
@@ -149,7 +143,9 @@ def gathered_causes(identification: Identification) -> list[tuple[Cause, FloatAr
     causes: dict[str, tuple[Cause, FloatArray]] = {}
     first = 0
     for experiment, size in zip(objective.experiments, sizes, strict=True):
-        for cause in causes_of(experiment, identification.values):
+        model = np.abs(experiment.model(identification.values))
+        for one in causes_of(experiment, identification.values):
+            cause = replace(one, share=float(np.max(np.abs(one.effect) / model)))
             _, direction = causes.setdefault(cause.words, (cause, np.zeros(total)))
             direction[first : first + size] = _whitened(experiment, cause.effect)
         first += size
