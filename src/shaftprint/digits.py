@@ -49,6 +49,11 @@ _PLAIN_LETTERS = str.maketrans(
 )
 
 
+def after_number(unit: str) -> str:
+    """Return a unit as it stands behind a number of a sentence; nothing for a number without unit."""
+    return "" if unit == "-" else f" {unit}"
+
+
 def unit_text(unit: str) -> str:
     """Return a unit as printed; nothing for a number without unit."""
     return _UNITS.get(unit, unit)
@@ -128,13 +133,13 @@ def stated(value: float, std: float, unit: str) -> str:
     """Return ``value +/- standard deviation unit`` for a sentence; short times in milliseconds."""
     factor, unit = fine_unit(unit, value, std)
     text = plain_letters(with_deviation(factor * value, factor * std))
-    return text if unit == "-" else f"{text} {unit}"
+    return text + after_number(unit)
 
 
 def stated_interval(value: float, lower: float, upper: float, std: float, unit: str) -> str:
     """Return ``value (95 % interval lower to upper unit)`` for a sentence, all down to the digit of the deviation."""
     factor, unit = fine_unit(unit, value, lower, upper)
-    ends = interval(factor * lower, factor * upper, factor * std) + (f" {unit}" if unit != "-" else "")
+    ends = interval(factor * lower, factor * upper, factor * std) + after_number(unit)
     return plain_letters(f"{to_digit_of(factor * value, factor * std)} (95 % interval {ends})")
 
 

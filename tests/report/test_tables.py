@@ -9,7 +9,7 @@ from shaftprint.catalogue import structure
 from shaftprint.identify import Estimate
 from shaftprint.markup._html import sentence_html, symbol_html
 from shaftprint.report.sections._results import fit_section
-from shaftprint.tables import Table, limits, parameter_table, texts
+from shaftprint.tables import Table, parameter_table, texts
 from shaftprint.tables._fingerprint import combination_table, expected_text, fit_table, truth_of_combinations
 from shaftprint.tables._signals import calibration_table, repair_table, step_table, strip_table, window_table
 
@@ -28,7 +28,7 @@ def test_intervals_of_the_profile_and_open_ends(fingerprint):
     assert [row[2] for row in table.rows] == ["0.000* to 0.099", "4.00 to 20.00*", "not known"]
     assert table.rows[2][1] == "1.000 (at its bound)"
     assert table.rows[0][3] == "s"
-    assert limits(Estimate(name="a", unit="-", value=1.0, std=1.0)) == pytest.approx((-0.959964, 2.959964))
+    assert Estimate(name="a", unit="-", value=1.0, std=1.0).ends_95 == pytest.approx((-0.959964, 2.959964))
 
 
 def test_truth_within_and_not(fingerprint):

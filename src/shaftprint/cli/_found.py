@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from shaftprint.digits import plain_letters, stated, stated_interval, to_digit_of
+from shaftprint.digits import after_number, plain_letters, stated, to_digit_of
 from shaftprint.late import late
 
 with late():
-    from shaftprint import distributions
     from shaftprint.catalogue._roles import ShipRole
     from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
     from shaftprint.fingerprint._fingerprint import Fingerprint
@@ -37,7 +36,7 @@ def found_sentences(fingerprint: Fingerprint, truth: Mapping[str, float]) -> tup
         doubt = f"; {doubts[name]}" if name in doubts else ""
         words = SENTENCES[name] or quantity.meaning.capitalize()
         symbol = "" if words.lower().startswith(name) else f" ({name})"
-        (unusable if doubt else usable).append(f"{words}{symbol}: {_value(quantity)}{given}{true}{doubt}.")
+        (unusable if doubt else usable).append(f"{words}{symbol}: {quantity.in_words}{given}{true}{doubt}.")
     return (usable, unusable) if usable or unusable else (_of_parameters(fingerprint.parameters, doubts), [])
 
 
@@ -50,14 +49,14 @@ def _of_parameters(parameters: Sequence[Estimate], doubts: Mapping[str, str]) ->
     sentences = []
     for one in parameters[:MOST_PARAMETERS]:
         doubt = f"; not to be used: {doubts[one.name]}" if one.name in doubts else ""
-        sentences.append(f"{one.name}{f', {one.meaning}' if one.meaning else ''}: {_value(one)}{doubt}.")
+        sentences.append(f"{one.name}{f', {one.meaning}' if one.meaning else ''}: {one.in_words}{doubt}.")
     more = len(parameters) - MOST_PARAMETERS
     return [*sentences, f"{more} parameters more, in the report."] if more > 0 else sentences
 
 
 def _true(quantity: Estimate, true: float) -> str:
-    unit = "" if quantity.unit == "-" else f" {quantity.unit}"
-    return f"; true value {plain_letters(to_digit_of(true, _shown_std(quantity)))}{unit}"
+    value = plain_letters(to_digit_of(true, quantity.interval_std))
+    return f"; true value {value}{after_number(quantity.unit)}"
 
 
 def _beside(quantity: Estimate) -> str:
@@ -66,23 +65,7 @@ def _beside(quantity: Estimate) -> str:
         return ""
     if quantity.expected_std:
         return f", in the vessel file {stated(quantity.expected, quantity.expected_std, quantity.unit)}"
-    return f", in the vessel file {plain_letters(to_digit_of(quantity.expected, _shown_std(quantity)))}"
-
-
-def _value(quantity: Estimate) -> str:
-    """Return the value with its 95 % interval, or with its standard deviation where there is no interval."""
-    if quantity.interval_95 is None:
-        return stated(quantity.value, quantity.std, quantity.unit)
-    lower, upper = quantity.interval_95
-    return stated_interval(quantity.value, lower, upper, _shown_std(quantity), quantity.unit)
-
-
-def _shown_std(quantity: Estimate) -> float:
-    """Return the standard deviation that the digits follow: that of the interval, where there is one."""
-    if quantity.interval_95 is None:
-        return quantity.std
-    lower, upper = quantity.interval_95
-    return 0.5 * (upper - lower) / distributions.NORMAL_95
+    return f", in the vessel file {plain_letters(to_digit_of(quantity.expected, quantity.interval_std))}"
 
 
 def _given(quantity: Estimate, fingerprint: Fingerprint) -> str:

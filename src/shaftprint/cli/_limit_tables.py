@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from shaftprint.cli._terminal import print_findings
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_table, print_tables
@@ -12,7 +10,6 @@ from shaftprint.late import late
 from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
 
 with late():
-    from shaftprint import distributions
     from shaftprint.fingerprint._line_with_limits import LineWithLimits
     from shaftprint.identify.fit._estimate import Estimate
     from shaftprint.limits._candidates import Kind
@@ -49,7 +46,7 @@ def _first_numbers(limits: LimitFit) -> list[Estimate]:
 
 
 def _answer(limits: LimitFit, number: Estimate) -> str:
-    value = stated_interval(number.value, *_ends(number), _std(number), number.unit)
+    value = stated_interval(number.value, *_ends(number), number.interval_std, number.unit)
     trust = "trusted" if number.trusted else f"not trusted, {number.doubt}"
     gain = f"Likelihood-ratio statistic {limits.gains[Kind(number.limit)]:.0f}."
     return f"{number.limit}: {number.name} = {value}, {trust}. {gain}"
@@ -58,13 +55,6 @@ def _answer(limits: LimitFit, number: Estimate) -> str:
 def _ends(number: Estimate) -> tuple[float, float]:
     """Return the ends of the interval; one that the data did not set is infinite."""
     return number.interval_95 or number.limits_95
-
-
-def _std(number: Estimate) -> float:
-    """Return the standard deviation that the digits follow: that of the interval, which is shown."""
-    lower, upper = _ends(number)
-    width = 0.5 * (upper - lower) / distributions.NORMAL_95
-    return width if math.isfinite(width) and width > 0.0 else number.std
 
 
 def _number_table(limits: LimitFit) -> Table:

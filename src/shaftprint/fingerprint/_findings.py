@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.catalogue._roles import ShipRole
-from shaftprint.digits import p_value_text, plain_letters, stated, stated_interval
-from shaftprint.distributions import NORMAL_95
+from shaftprint.digits import after_number, p_value_text, plain_letters, stated
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER
 from shaftprint.identify.fit._estimate import Estimate
@@ -133,9 +132,9 @@ def _poorly_determined(
     for estimate in identification.parameters:
         if estimate.name not in doubts or estimate.name in identification.settings.priors or estimate.at_bound:
             continue
-        text = f"{estimate.name} = {_written(numbers.get(estimate.name, estimate))} is poorly determined by this test"
+        text = f"{estimate.name} = {numbers.get(estimate.name, estimate).in_words} is poorly determined by this test"
         better = [c for c in identification.combinations if _is_better(c, estimate, identification)]
-        precise = ", ".join(f"{c.name} = {_written(numbers.get(c.name, c))}" for c in better)
+        precise = ", ".join(f"{c.name} = {numbers.get(c.name, c).in_words}" for c in better)
         findings.append(text + (f"; better determined: {precise}." if better else "."))
     return findings
 
@@ -208,7 +207,7 @@ def _against_expected(physical: tuple[Estimate, ...], vessel: "Vessel | None", *
             continue
         spread = np.hypot(quantity.std, quantity.expected_std or 0.0)
         if abs(quantity.value - quantity.expected) > SURPRISING * spread:
-            unit = _unit(quantity)
+            unit = after_number(quantity.unit)
             why = "" if by_scale else _other_direction(quantity, vessel) or WHY.get(quantity.name, "")
             findings.append(
                 f"{quantity.name} = {quantity.value:.4g}{unit} against {quantity.expected:.4g}{unit} of the vessel "
@@ -233,15 +232,3 @@ def _other_direction(quantity: Estimate, vessel: "Vessel | None") -> str:
         return ""
     way = "astern" if found_astern else "ahead"
     return f" Of a shaft that turns {way} it states {other:.4g}: check direction of its working point."
-
-
-def _written(number: Estimate) -> str:
-    """Return a number with its 95 % interval, or with its standard deviation where there is none."""
-    if number.interval_95 is None:
-        return stated(number.value, number.std, number.unit)
-    lower, upper = number.interval_95
-    return stated_interval(number.value, lower, upper, 0.5 * (upper - lower) / NORMAL_95, number.unit)
-
-
-def _unit(number: Estimate) -> str:
-    return "" if number.unit == "-" else f" {number.unit}"

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.catalogue._limited_governor import GovernorSymbol
+from shaftprint.digits import after_number
 from shaftprint.distributions import NORMAL_95
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.uncertainty._profile import Interval
@@ -320,7 +321,7 @@ def exclusion(candidate: LimitCandidate, level: float | None, units: Units) -> s
         Kind.DEADBAND: "none wider than",
         Kind.SMOKE: "none below",
     }[candidate.kind]
-    unit = "" if scale.unit == "-" else f" {scale.unit}"
+    unit = after_number(scale.unit)
     return f"{candidate.kind.value}: not seen, {side} {scale.name} = {scale.factor * level:.3g}{unit}"
 
 

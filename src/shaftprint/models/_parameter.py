@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+from shaftprint.digits import after_number
 from shaftprint.errors import StructureError
 from shaftprint.models._role import Role
 
@@ -55,7 +56,7 @@ class Parameter:
         if not self.lower <= self.value <= self.upper:
             raise StructureError(
                 f"parameter {self.name}: expected a value from {self.lower} to {self.upper}"
-                f"{'' if self.unit == '-' else f' {self.unit}'}, found {self.value}; change the value or the bounds."
+                f"{after_number(self.unit)}, found {self.value}; change the value or the bounds."
             )
 
     def held_at(self, value: float) -> "Parameter":

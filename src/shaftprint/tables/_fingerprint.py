@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import fine_unit, interval, p_value_text, plain, to_digit_of, unit_text, with_deviation
-from shaftprint.distributions import NORMAL_95
 from shaftprint.plain_table import MEANING, Column, Symbol, Table, numbers, texts
 from shaftprint.units import PERCENT
 
@@ -95,24 +94,15 @@ def value_text(quantity: "Estimate", factor: float = 1.0) -> str:
 
 def _std_of_digits(quantity: "Estimate") -> float:
     """Return the standard deviation that sets the digits of a number: the one shown, or that of its interval."""
-    if quantity.stated_std is not None or quantity.interval_95 is None:
-        return quantity.std
-    lower, upper = quantity.interval_95
-    width = 0.5 * (upper - lower) / NORMAL_95
-    return width if math.isfinite(width) and width > 0.0 else quantity.std
+    return quantity.interval_std if quantity.stated_std is None else quantity.std
 
 
 def _ends(quantity: "Estimate") -> tuple[float, ...]:
     return (quantity.std,) if quantity.interval_95 is None else quantity.interval_95
 
 
-def limits(quantity: "Estimate") -> tuple[float, float]:
-    """Return the 95 % interval of a quantity: the profile's, or else that of its standard deviation."""
-    return quantity.ends_95
-
-
 def _interval_text(quantity: "Estimate", factor: float) -> str:
-    lower, upper = limits(quantity)
+    lower, upper = quantity.ends_95
     if not (math.isfinite(lower) and math.isfinite(upper)):
         return "not known"
     text = interval(factor * lower, factor * upper, factor * _std_of_digits(quantity))
@@ -124,7 +114,7 @@ def _interval_text(quantity: "Estimate", factor: float) -> str:
 
 def _truth_cells(quantity: "Estimate", truth: Mapping[str, float], factor: float) -> tuple[str, str]:
     true = truth.get(quantity.name, math.nan)
-    lower, upper = limits(quantity)
+    lower, upper = quantity.ends_95
     inside = "–" if math.isnan(true) else "yes" if lower <= true <= upper else "no"
     return to_digit_of(factor * true, factor * _std_of_digits(quantity)), inside
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from shaftprint.digits import after_number
 from shaftprint.spelling import listed
 from shaftprint.units import PERCENT
 from shaftprint.validation._model import Model
@@ -77,7 +78,7 @@ def _described(comparison: ExcerptComparison) -> str:
 
 
 def _apart(number: StepNumber) -> str:
-    unit = "" if number.unit == "-" else f" {number.unit}"
+    unit = after_number(number.unit)
     digits = 0 if number.unit == "%" else 2
     return (
         f"{number.name} of {WORDS[number.output]} {number.measured:.{digits}f} instead of "

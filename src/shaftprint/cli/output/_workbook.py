@@ -19,7 +19,6 @@ from shaftprint.tables._workbook import Sheet, Value, expect_writer, sheet_of, s
 
 with late():
     from shaftprint.fingerprint import _line_fingerprint
-    from shaftprint.tables._fingerprint import limits
 
 ENDING = ".xlsx"
 
@@ -87,7 +86,7 @@ def _numbers(fingerprint: _line_fingerprint.LineFingerprint) -> Iterator[Sequenc
             std = one.std if one.stated_std is not None else math.nan
             doubt = verdict.not_trusted.get(one.name, "") if verdict.trustworthy else "the fit is not trustworthy"
             shown = style_for(one.std)
-            cells = [(number, shown) for number in (one.value, std, *limits(one))]
+            cells = [(number, shown) for number in (one.value, std, *one.ends_95)]
             expected = [("" if e is None else (e, shown)) for e in (one.expected, one.expected_std)]
             bound = " and ".join(end for end, is_open in zip(("from", "to"), one.interval_open, strict=True) if is_open)
             yield (one.name, *cells, bound, one.unit, *expected, "no" if doubt else "yes", doubt, one.meaning)

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
-from shaftprint.digits import interval, plain_letters, stated, to_digit_of
+from shaftprint.digits import after_number, interval, plain_letters, stated, stated_interval, to_digit_of
 from shaftprint.distributions import NORMAL_95
 from shaftprint.models._role import Role
 from shaftprint.notebook._shown import Shown
@@ -51,8 +51,8 @@ class Estimate(Shown):
         """Return value, 95 % interval, what it is, what was expected, and why it is not to be used."""
         lower, upper = self.ends_95
         # where the interval says something else than the deviation it gives the digits
-        std = (upper - lower) / (2.0 * NORMAL_95) if self.stated_std is None else self.stated_std
-        unit = "" if self.unit == "-" else f" {self.unit}"
+        std = self.interval_std if self.stated_std is None else self.stated_std
+        unit = after_number(self.unit)
         alone = plain_letters(f"{to_digit_of(self.value, std)}{unit}{' (at its bound)' if self.at_bound else ''}")
         expected, known = self.expected, self.expected_std
         facts = {
@@ -90,6 +90,22 @@ class Estimate(Shown):
             and abs(self.value + NORMAL_95 * self.std - upper) <= tolerance
         )
         return self.std if alike else None
+
+    @property
+    def interval_std(self) -> float:
+        """The standard deviation that the digits follow: that of the interval, where there is one."""
+        if self.interval_95 is None:
+            return self.std
+        lower, upper = self.interval_95
+        width = 0.5 * (upper - lower) / NORMAL_95
+        return width if math.isfinite(width) and width > 0.0 else self.std
+
+    @property
+    def in_words(self) -> str:
+        """Its value with the 95 % interval, or with the standard deviation where there is no interval."""
+        if self.interval_95 is None:
+            return stated(self.value, self.std, self.unit)
+        return stated_interval(self.value, *self.interval_95, self.interval_std, self.unit)
 
     @property
     def limits_95(self) -> tuple[float, float]:

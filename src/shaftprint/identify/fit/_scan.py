@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.digits import after_number
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.likelihood._objective import Objective
@@ -69,7 +70,7 @@ class Scan:
     @property
     def sentences(self) -> tuple[str, ...]:
         """What the curve says, in words."""
-        name, unit = self.parameter.name, "" if self.parameter.unit == "-" else f" {self.parameter.unit}"
+        name, unit = self.parameter.name, after_number(self.parameter.unit)
         solved = f"; {', '.join(self.closed_form)} solved in closed form" if self.closed_form else ""
         where = f"from {self.grid[0]:.4g} to {self.grid[-1]:.4g}{unit} ({self.grid.size} values{solved})"
         if len(self.minima) == 1:

@@ -5,7 +5,7 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
-from shaftprint.digits import stated
+from shaftprint.digits import after_number, stated
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.judgement._evidence import Evidence, gain_reserve, loop_delay_s
 from shaftprint.identify.judgement._line_quality import crossings_rad_s
@@ -68,7 +68,7 @@ def small_margins(evidence: Evidence) -> dict[str, str]:
 def _range(number: Estimate) -> str:
     """Return the 95 % interval of a margin in words."""
     low, high = number.interval_95 or number.limits_95
-    unit = "" if number.unit == "-" else f" {number.unit}"
+    unit = after_number(number.unit)
     return f"{low:.3g} and {high:.3g}{unit}"
 
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Collection, Sequence
 
+from shaftprint.digits import after_number
 from shaftprint.spelling import listed
 
 # Below this a probability is given by its order of magnitude; below the smallest only as smaller than that.
@@ -34,4 +35,4 @@ def spans(names: Collection[str], order: Sequence[str]) -> str:
 
 def number(value: float, unit: str, *, digits: int = 4) -> str:
     """Return a value with its unit, where it has one."""
-    return f"{value:.{digits}g}" if unit == "-" else f"{value:.{digits}g} {unit}"
+    return f"{value:.{digits}g}{after_number(unit)}"

@@ -28,7 +28,6 @@ from shaftprint.choices import LOAD_REPEATABILITY
 from shaftprint.distributions import NORMAL_95, normal_cdf
 from shaftprint.drift._shared_errors import shared_errors
 from shaftprint.fingerprint._physical import GAUGE_ZERO
-from shaftprint.tables._fingerprint import limits
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._line_fingerprint import LineFingerprint
@@ -190,13 +189,13 @@ def _between_tests(quantity: "Estimate", load: float) -> float:
 
 def _interval(quantity: "Estimate", fingerprint: "LineFingerprint") -> tuple[tuple[float, float], tuple[bool, bool]]:
     """Return the 95 % interval of a number and which ends are open, as those of the parameter that it follows from."""
-    low, high = limits(quantity)
+    low, high = quantity.ends_95
     parameter = fingerprint.multiplied(quantity)
     if quantity.interval_95 is not None or parameter is None or parameter.value == 0.0:
         return (low, high), quantity.interval_open
     # to first order a standard deviation does not know how lopsided the profile of the parameter is
     scale = quantity.value / parameter.value
-    ends = zip((scale * end for end in limits(parameter)), parameter.interval_open, strict=True)
+    ends = zip((scale * end for end in parameter.ends_95), parameter.interval_open, strict=True)
     (lowest, open_low), (highest, open_high) = sorted(ends)
     return (min(low, lowest), max(high, highest)), (open_low, open_high)
 

@@ -7,7 +7,6 @@ from shaftprint.digits import interval, p_value_text, plain, rounded, to_digit_o
 from shaftprint.distributions import NORMAL_95
 from shaftprint.plain_table import MEANING, Column, Symbol, Table, numbers, texts
 from shaftprint.tables._conditions import ship_text, tested_text, water_facts
-from shaftprint.tables._fingerprint import limits
 from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
@@ -99,7 +98,7 @@ def _beside(title: str, quantities: "Mapping[str, Sequence[Estimate]]") -> Table
 def _cell(quantity: "Estimate | None") -> str:
     if quantity is None:
         return NOT_THERE
-    lower, upper = limits(quantity)
+    lower, upper = quantity.ends_95
     bound = ", at its bound" if quantity.at_bound else ""
     return f"{with_deviation(quantity.value, quantity.std)} ({interval(lower, upper, quantity.std)}){bound}"
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from shaftprint.digits import plain, unit_text
 from shaftprint.plain_table import Table, numbers, texts
 from shaftprint.report.sections.first_page._doubts import doubt_of, is_off
-from shaftprint.tables._fingerprint import expected_text, limits
+from shaftprint.tables._fingerprint import expected_text
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def number_table(fingerprint: "Fingerprint") -> list[Table]:
 def shown(quantity: "Estimate") -> tuple[str, str]:
     """Return a value with its unit and its 95 % interval, with the digits that the interval leaves; times in ms."""
     scale, unit = _scale(quantity)
-    value, lower, upper = (scale * number for number in (quantity.value, *limits(quantity)))
+    value, lower, upper = (scale * number for number in (quantity.value, *quantity.ends_95))
     decimals = _decimals(value, upper - lower)
     text = f"{_rounded(value, decimals)} {unit}".strip()
     if not math.isfinite(upper - lower):
@@ -58,7 +58,7 @@ def expected_shown(quantity: "Estimate") -> str:
     scale, _ = _scale(quantity)
     if quantity.expected is None or quantity.expected_std:
         return expected_text(quantity, scale)
-    lower, upper = (scale * number for number in limits(quantity))
+    lower, upper = (scale * number for number in quantity.ends_95)
     return _rounded(scale * quantity.expected, _decimals(scale * quantity.value, upper - lower))
 
 
