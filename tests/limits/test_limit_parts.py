@@ -11,7 +11,6 @@ from tests.tug.ideal_signals import simulate_signals
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import limited_governor
 from shaftprint.identify import Estimate
-from shaftprint.identify.uncertainty._profile import Interval
 from shaftprint.limits import Kind, LimitFit, limit_hints
 from shaftprint.limits._identify_limits import LEAST_OFFSET_STD, _offset_std
 from shaftprint.limits._numbers import _doubt, doubt_of_governor, hardly_seen
@@ -75,7 +74,7 @@ def test_numbers_that_are_not_known_are_not_trusted(interval, at_bound, doubt):
 
 
 def _interval(lower, upper, lower_open, upper_open):
-    return Interval(name="a level", lower=lower, upper=upper, lower_open=lower_open, upper_open=upper_open)
+    return SimpleNamespace(lower=lower, upper=upper, lower_open=lower_open, upper_open=upper_open)
 
 
 def harmonics(third):
