@@ -18,7 +18,7 @@ class _Closing(Protocol):
     def close(self) -> object: ...
 
 
-Closing = TypeVar("Closing", bound=_Closing)
+_Resource = TypeVar("_Resource", bound=_Closing)
 
 # Names may have 255 bytes, a letter up to four: so many letters of the stem and of the ending.
 _LONGEST = 24
@@ -117,7 +117,7 @@ def naming(path: Path, *, instead_of: Path | None = None) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def kept_open(resource: Closing) -> Iterator[Closing]:
+def kept_open(resource: _Resource) -> Iterator[_Resource]:
     """Leave a resource open for whom it is handed to, but close it where what is done with it first fails."""
     try:
         yield resource
