@@ -207,3 +207,13 @@ def test_frames_with_their_bytes_in_one_column_are_told(tmp_path):
         row = ";".join(["17727012{k:02d}.5", *("0" * titles.count(";")), ""])[:-1]
         with pytest.raises(RecordingError, match="found the frames of a CAN bus"):
             _read(tmp_path, f"{titles}\n" + "".join(row.format(k=k) + "\n" for k in range(90)))
+
+
+def test_words_with_colons_stand_among_columns_of_values(tmp_path):
+    path = tmp_path / "log.csv"
+    rows = "".join(f"{0.5 * k:.1f},{800 + k},A:{k}/0 % / B:0/0 %,{11.0 + 0.25 * k}\n" for k in range(60))
+    path.write_text("time [s],n [rpm],valves,T [degC]\n" + rows)
+    with read_recording(path) as recording:
+        assert list(recording.channels) == ["n", "T"]
+        assert recording.channel("T").values(0, 60).tolist() == [11.0 + 0.25 * k for k in range(60)]
+        assert 'it holds text, such as "A:0/0 % / B:0/0 %"' in recording.left_out["valves"]

@@ -58,6 +58,7 @@ _BESIDE_VALUES = (
     ),
 )
 """How lines show names beside values, how often in each, what that is, and what to do."""
+_ALONE = re.compile(r"(?:^|[;,\t])[+-]?\d+(?:\.\d+)?(?=[;,\t]|$)")
 # Fewer rows of numbers may stand in a head.
 _ROWS = 4
 
@@ -93,7 +94,13 @@ def expect_plain_values(path: Path, lines: Sequence[str]) -> None:
     """
     filled = [line for line in lines if line.strip()]
     for pattern, fewest, found, remedy in _BESIDE_VALUES:
-        if len(filled) > _ROWS and sum(len(pattern.findall(line)) >= fewest for line in filled) >= _MOST * len(filled):
+        hits = [len(pattern.findall(line)) for line in filled]
+        # columns of words, as "A:0/B:0 %", may stand among more of numbers
+        shown = sum(
+            hit >= fewest and (hit >= len(_ALONE.findall(line)) or fewest == 1)
+            for hit, line in zip(hits, filled, strict=True)
+        )
+        if len(filled) > _ROWS and shown >= _MOST * len(filled):
             raise RecordingError(
                 f"{path}: expected values alone below one row of titles, found {found}, "
                 f'"{printable(filled[-2])[:30]}"; {remedy}'
