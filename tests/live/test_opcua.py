@@ -17,6 +17,7 @@ from shaftprint.live._engine import LiveTest
 from shaftprint.live._record import LiveRecord
 from shaftprint.live._rehearse import simulated_ship_of
 from shaftprint.live._watch import AbortRule
+from shaftprint.live.counterparts import _opcua_server
 from shaftprint.live.counterparts._access import Access
 from shaftprint.live.counterparts._faults import LinkFaults
 from shaftprint.live.counterparts._opcua import QUEUE, OpcUaCounterpart
@@ -141,6 +142,25 @@ def test_what_is_asked_of_a_silent_link_ends_within_its_time():
                 return loop.time() - begun_s
 
     assert with_server(work) < 60.0
+
+
+@pytest.mark.parametrize("kind", ["UInt32", "Double"])
+def test_the_heartbeat_is_a_number_of_the_kind_that_the_server_has(monkeypatch, kind):
+    monkeypatch.setattr(_opcua_server, "HEARTBEAT", kind)
+
+    async def work(counterpart, server):
+        await counterpart.beat(70_000)
+        node = server._heartbeat
+        return (await node.read_data_value()).Value
+
+    written = with_server(work)
+    assert (written.VariantType.name, written.Value) == (kind, 70_000)
+
+
+def test_a_heartbeat_that_would_overflow_is_refused(monkeypatch):
+    monkeypatch.setattr(_opcua_server, "HEARTBEAT", "UInt16")
+    with pytest.raises(LiveError, match=r"expected a Heartbeat of the kind Int64, .*, found UInt16"):
+        with_server(lambda counterpart, server: asyncio.sleep(0))
 
 
 def test_nothing_is_written_without_user_and_encryption():

@@ -31,6 +31,7 @@ FOLDER: Final = "Shaftprint"
 QUEUE: Final = 400
 """Blocks that the server keeps for the subscription: 20 s of 20 Hz."""
 _PORTS: Final = {"opc.tcp": 4840}
+_HEARTBEATS: Final = ("Int64", "UInt64", "Int32", "UInt32", "Double")
 _PUBLISHED_MS: Final = 50.0
 # Reaching it may take longer than an answer [s].
 _CONNECT_S, _GONE_S = 5.0, 1.0
@@ -56,6 +57,7 @@ class OpcUaCounterpart:
         self._subscription: Any = None
         self._folder: Any = None
         self._space = 0
+        self._kind: Any = None
         # more than this nobody reads in time: the oldest go first, as in the queue of the server
         self._blocks: deque[Block | str] = deque(maxlen=QUEUE)
         self._arrived = asyncio.Event()
@@ -101,6 +103,12 @@ class OpcUaCounterpart:
             self._subscription.subscribe_data_change(block, queuesize=QUEUE, sampling_interval=0.0), _CONNECT_S
         )
         self._heartbeat = await self._answered(self._folder.get_child([f"{self._space}:Heartbeat"]), _CONNECT_S)
+        # a server refuses another kind of number, or lets it change the node
+        self._kind = await self._answered(self._heartbeat.read_data_type_as_variant_type(), _CONNECT_S)
+        if self._kind.name not in _HEARTBEATS:
+            raise LiveError(
+                f"{self.name}: expected a Heartbeat of the kind {', '.join(_HEARTBEATS)}, found {self._kind.name}."
+            )
 
     async def read(self, timeout_s: float) -> Block:
         """Return the next block; raise SilentLinkError if none comes in time."""
@@ -119,7 +127,8 @@ class OpcUaCounterpart:
     async def beat(self, count: int) -> None:
         """Send the heartbeat."""
         self._expect_writer()
-        value = self._asyncua.ua.DataValue(self._asyncua.ua.Variant(count, self._asyncua.ua.VariantType.Int64))
+        number = float(count) if self._kind.name == "Double" else count
+        value = self._asyncua.ua.DataValue(self._asyncua.ua.Variant(number, self._kind))
         await self._answered(self._heartbeat.write_value(value))
 
     async def take(self) -> None:

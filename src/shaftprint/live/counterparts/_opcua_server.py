@@ -15,6 +15,8 @@ from shaftprint.live.counterparts._plain import described, written_block
 from shaftprint.live.counterparts._simulated import SimulatedCounterpart, SimulatedShip
 
 # Methods, and what their arguments are.
+HEARTBEAT = "Int64"
+"""Kind of number of its heartbeat."""
 _WORDS: Final[Mapping[str, tuple[str, ...]]] = {
     "Take": (),
     "Write": ("volts",),
@@ -63,7 +65,7 @@ class SimulatedServer:
         description = Description(channels=self.ship.channels, abilities=SimulatedCounterpart.abilities)
         await folder.add_variable(space, "Description", described(description).decode())
         self._block = await folder.add_variable(space, "Block", b"", ua.VariantType.ByteString)
-        self._heartbeat = await folder.add_variable(space, "Heartbeat", 0, ua.VariantType.Int64)
+        self._heartbeat = await folder.add_variable(space, "Heartbeat", 0, ua.VariantType[HEARTBEAT])
         await self._heartbeat.set_writable()
         double, text = ua.VariantType.Double, ua.VariantType.String
         for name, words in _WORDS.items():
