@@ -45,3 +45,20 @@ def test_a_file_that_is_no_truth_is_told_before_the_fit(invoke, sailed, tmp_path
     assert refused.exit_code == 1
     assert "none.json: expected a truth file written beside a recording" in " ".join(refused.output.split())
     assert not (tmp_path / "result").exists()
+
+
+def test_a_pick_up_that_the_truth_does_not_name_is_told_and_the_result_stays(invoke, sailed, tmp_path):
+    """The pick-up on the shaft, four strips, has another title in the truth file: the rest has its truth."""
+    stated = json.loads(sailed.with_suffix(".truth.json").read_text(encoding="utf-8"))
+    (of_shaft,) = (strips for strips in stated["strips"] if len(strips["angle_deg"]) > 1)
+    of_shaft["channel"] = "gear_teeth"
+    truth = tmp_path / "other.truth.json"
+    truth.write_text(json.dumps(stated), encoding="utf-8")
+    of_test = ("--vessel", "stan-tug-1205", "--campaign", "5min", "--leg", "M1", "--no-report")
+    result = invoke("identify", sailed, *of_test, "--truth", truth, "-o", tmp_path / "result")
+    text = " ".join(result.output.split())
+    assert result.exit_code == 0, text
+    assert re.search(r"other\.truth\.json \* expected (\d+) strips of \w+, found [^;]*\b\1 of gear_teeth", text)
+    assert "Take the truth file that was written beside this recording" in text
+    assert "true value" in text
+    assert (tmp_path / "result" / "fingerprint.json").is_file()

@@ -14,6 +14,12 @@ from shaftprint.tug._truth import StripTruth, Truth
 from shaftprint.units import rpm_from_rev_s
 
 DEGREES_PER_REVOLUTION = 360.0
+_PHYSICAL = {
+    "I_dn": "inertia_downstream_kg_m2",
+    "I_up": "inertia_upstream_kg_m2",
+    "k": "coupling_stiffness_nm_rad",
+    "d": "coupling_damping_nm_s_rad",
+}
 
 
 def fingerprint_truth(truth: Truth, structure: Structure, signals: Signals) -> dict[str, float]:
@@ -21,7 +27,7 @@ def fingerprint_truth(truth: Truth, structure: Structure, signals: Signals) -> d
 
     ``truth``: what was put into the recording. ``structure``: the structure that was identified. ``signals``: their
     working point is the one at which the estimates are normalised. What hangs on a free parameter that the truth does
-    not have is left out.
+    not have is left out, as are strips of a pick-up that it does not name.
     """
     known = _parameters(truth, structure, signals)
     # sensors are as the vessel file says; of what else was fitted the default is no truth: nan passes through
@@ -30,13 +36,7 @@ def fingerprint_truth(truth: Truth, structure: Structure, signals: Signals) -> d
     named = dict(zip(structure.names, values.tolist(), strict=True))
     arrays = {name: np.asarray(value) for name, value in named.items()}
     combinations = {combination.name: float(combination.of(arrays)) for combination in structure.combinations}
-    physical = {
-        "I_dn": truth.physical["inertia_downstream_kg_m2"],
-        "I_up": truth.physical["inertia_upstream_kg_m2"],
-    }
-    if "coupling_stiffness_nm_rad" in truth.physical:
-        physical["k"] = truth.physical["coupling_stiffness_nm_rad"]
-        physical["d"] = truth.physical["coupling_damping_nm_s_rad"]
+    physical = {name: truth.physical[told] for name, told in _PHYSICAL.items() if told in truth.physical}
     found = named | combinations | physical | _calibration(truth, signals)
     if not unknown:
         linear = margins(structure, values)
@@ -99,10 +99,27 @@ def _calibration(truth: Truth, signals: Signals) -> dict[str, float]:
         "set-point intercept": truth.set_point_intercept_rpm,
     }
     for strips in signals.strips:
-        true = next(candidate for candidate in truth.strips if candidate.channel == strips.channel)
-        for number, angle in enumerate(_turned(true, strips), start=1):
+        true = _same_pick_up(truth, strips)
+        for number, angle in enumerate([] if true is None else _turned(true, strips), start=1):
             true_values[f"{strips.channel} strip {number}"] = angle
     return true_values
+
+
+def strips_without_truth(truth: Truth, signals: Signals) -> list[str]:
+    """Return a sentence for each pick-up whose strips the truth does not have, by its channel and their number."""
+    told = ", ".join(f"{len(strips.angle_deg)} of {strips.channel}" for strips in truth.strips) or "none"
+    return [
+        f"expected {strips.angle_rev.size} strips of {strips.channel}, found {told}; their angles stand without true "
+        "ones. Take the truth file that was written beside this recording, and the names of its channels."
+        for strips in signals.strips
+        if _same_pick_up(truth, strips) is None
+    ]
+
+
+def _same_pick_up(truth: Truth, strips: StripAngles) -> StripTruth | None:
+    """Return the true strips of a pick-up; None where the truth names none such or another number of them."""
+    named = (true for true in truth.strips if true.channel == strips.channel)
+    return next((true for true in named if len(true.angle_deg) == strips.angle_rev.size), None)
 
 
 def _turned(true: StripTruth, strips: StripAngles) -> list[float]:

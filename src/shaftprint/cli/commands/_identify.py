@@ -44,7 +44,7 @@ with late():
     from shaftprint.cli._identify_both import identify_both_lines
     from shaftprint.fingerprint._json_file import write_fingerprint
     from shaftprint.fingerprint._sources import structure_sources
-    from shaftprint.rehearsal._true_fingerprint import fingerprint_truth
+    from shaftprint.rehearsal._true_fingerprint import fingerprint_truth, strips_without_truth
     from shaftprint.report.sections._black_box import black_box_sentence
     from shaftprint.survey._everything import with_everything
     from shaftprint.survey._fit_options import FitOptions
@@ -194,6 +194,8 @@ def command(
         true = None if truth is None else fingerprint_truth(truth, survey.identification.structure, survey.signals)
         # the answer first: what follows takes as long again
         print_found(survey.fingerprint, truth=true)
+        if truth is not None:
+            print_findings(f"Not in {truth_file}", strips_without_truth(truth, survey.signals))
         with results.progress() as steps:
             survey = _with_more(survey, more, rng=rng, steps=steps)
         _print_line(survey)
