@@ -42,11 +42,15 @@ def test_a_card_that_contradicts_itself_is_told_so(run, tmp_path):
 
 def test_pulses_that_the_logger_cannot_show_are_told_with_the_most_that_it_can(run, tmp_path):
     """Four samples from tooth to tooth: 500 teeth a second at 2000 Hz, 16 a turn at the 30 turns of 1800 rpm."""
-    result = run("new", "vessel", *CARD, "--engine-pulses", "fly=120", tmp_path / "mine.toml")
-    assert result.exit_code == 0
-    answer = " ".join(result.output.partition("contradicts itself")[2].split())
+    refused = run("new", "vessel", *CARD, "--engine-pulses", "fly=120", tmp_path / "mine.toml")
+    assert refused.exit_code == 2
+    assert (
+        "fly: expected a logger of 15000 Hz or more, as 120 pulses a turn need at the rated 1800 rpm" in refused.stderr
+    )
+    result = run("new", "vessel", *CARD, "--engine-pulses", "fly=24", tmp_path / "mine.toml")
+    answer = " ".join(result.output.split())
     assert "sensors.speed[1].pulses_per_revolution: expected at most 16, as a logger of 2000 Hz shows at" in answer
-    assert "1800 rpm of the engine, found 120; log at 15000 Hz or more" in answer
+    assert "1800 rpm of the engine, found 24; log at 2900 Hz or more" in answer
     # of the propeller shaft, 3.82 times as slow, 63
     for pulses, is_told in (("63", False), ("64", True), ("60-2", False), ("31+1", False), ("32+1", True)):
         path = tmp_path / f"{pulses}.toml"

@@ -16,7 +16,7 @@ CARD = (
     *("--power-kw", 1325, "--rated-rpm", 1600, "--cylinders", 12, "--diameter-m", 2.1),
     *("--blades", 4, "--pitch-ratio", 0.95, "--ratio", 5.2),
 )
-TYPED = "Kiel Tug, port\n1325\n1600\n12\n2.1\n4\n0.95\n5.2\n\n\nN m\n\nmA\n4=500\n20=1650\n"
+TYPED = "Kiel Tug, port\n1325\n1600\n12\n2.1\n4\n0.95\n5.2\n1\n\nN m\n\nmA\n4=500\n20=1650\n2000\n"
 
 
 def following(result):
@@ -202,7 +202,7 @@ def test_channels_of_the_recording_are_what_is_asked_for(run, here):
     """Enter takes what the log has; pulses of the shaft have to be typed, and a lever may be unknown."""
     logged(here, *PULSES)
     card = "Tug\n1325\n1600\n12\n2.1\n4\n0.95\n5.2\n"
-    following(run("start", input=f"{card}\nDrehzahl Welle=2\n\n\n\n\n\n"))
+    following(run("start", input=f"{card}1\nDrehzahl Welle=2\n\n\n\n\n\n"))
     sensors = load_vessel(here / "vessel.toml").sensors
     found = [(sensor.channel, sensor.shaft, sensor.pulses_per_revolution) for sensor in sensors.speed]
     assert found == [("Drehzahl Motor", "engine", 1), ("Drehzahl Welle", "propeller", 2)]
@@ -225,6 +225,49 @@ def test_numbers_may_be_typed_with_their_unit_and_a_speed_may_be_in_rpm(run, her
         "an answer is needed",
     ):
         assert said.stderr.count(told) == 1
+
+
+WHEEL = (*CARD, "--engine-pulses", "teeth=60", "--lever", "2=600", "--lever", "8=1600")
+
+
+def test_teeth_that_the_logger_does_not_show_are_refused_before_the_file_is_written(run, here):
+    """Four samples a tooth of 60 at 1600 rpm are 6400 a second; at the 1067 rpm of the test 4267 are enough."""
+    for said in (("start", "--yes"), ("new", "vessel", "vessel.toml")):
+        refused = run(*said, *WHEEL)
+        assert refused.exit_code == 2
+        assert "teeth: expected a logger of 6400 Hz or more, as 60 pulses a turn need at the rated 1600 rpm" in (
+            refused.stderr
+        )
+        assert "found 2000 Hz; state its samples a second, --sample-rate" in refused.stderr
+        assert not list(here.iterdir())
+    assert run("start", "--yes", *WHEEL, "--sample-rate", 4200).exit_code == 2
+    assert "contradicts itself" not in run("start", "--yes", *WHEEL, "--sample-rate", 4300).output
+    assert load_vessel(here / "vessel.toml").logger.sample_rate_hz == 4300.0
+
+
+def test_what_nobody_knows_has_no_default(run, here):
+    """Teeth and samples a second are asked for again until they are typed; a channel is not called none."""
+    card = TYPED.partition("5.2\n")[0] + "5.2\n"
+    said = run("start", input=f"{card}\n60\nnone\n\nN m\nnone\n\nmA\nnone\n\n2000\n10 kHz\n10000\n")
+    assert following(said)[:1] == ["plan"]
+    (wheel,) = load_vessel(here / "vessel.toml").sensors.speed
+    assert wheel.pulses_per_revolution == 60
+    assert load_vessel(here / "vessel.toml").logger.sample_rate_hz == 10000.0
+    assert said.stderr.count("an answer is needed") == 2
+    assert said.stderr.count("expected a channel of the logger, found 'none'") == 2
+    assert said.stderr.count("expected a logger of 6400 Hz or more") == 1
+    assert "expected a number in Hz, found '10 kHz'" in said.stderr
+    # the lever is none that anyone knows: that is said, with what to do
+    assert "U_setpoint: which engine speed it asks for is not known. Read it at two speeds" in " ".join(
+        said.output.split()
+    )
+
+
+def test_corrected_particulars_beside_a_vessel_file_are_said_not_to_be_used(run, here):
+    following(run("start", "--yes", *CARD))
+    said = run("start", "--yes", *CARD[:-1], 4.9)
+    assert "vessel.toml is there: what was stated of the ship was not used." in " ".join(said.output.split())
+    assert load_vessel(here / "vessel.toml").gearbox.ratio == 5.2
 
 
 def test_where_nobody_answers_it_is_said_how_to_go_on(run, here):

@@ -334,7 +334,7 @@ def _pulses(vessel: Vessel) -> Iterator[Disagreement]:
             found=str(wheel),
             advice=f"log at {wheel.least_rate_hz(turns_hz):g} Hz or more, take a wheel with fewer teeth or that of a "
             "slower shaft, or leave out [logger] where a counter lists the edges",
-            is_contradiction=wheel.closest * working_rpm > shown * highest_rpm,
+            is_contradiction=not wheel.is_shown(rate_hz=rate_hz, turns_hz=turns_hz * working_rpm / highest_rpm),
         )
 
 

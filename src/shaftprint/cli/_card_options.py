@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, Literal, cast
 
 import click
@@ -14,7 +15,9 @@ from shaftprint.cli._typed_numbers import number_and_unit
 from shaftprint.late import late
 
 with late():
-    from shaftprint.card._card import Card, Gauge, Lever, Pulses
+    from shaftprint.card._card import ASSUMED_PULSES, Card, Gauge, Lever, Pulses
+    from shaftprint.card._logger_rate import least_rate_hz, pulses_not_shown
+    from shaftprint.vessel._wheel import Wheel
 
 
 LEAST, MOST = 1e-6, 1e9
@@ -167,6 +170,10 @@ def pulses(text: str) -> Pulses:
     channel, _, wheel = text.rpartition("=")
     if not channel or not wheel:
         raise click.BadParameter(f'expected CHANNEL=PULSES such as PTM_e=1 or gear=60-2, found "{text}".')
+    try:
+        Wheel.parse(wheel)
+    except ValueError as error:
+        raise click.BadParameter(f"{channel}: {error}") from None
     return Pulses(channel=channel, wheel=wheel)
 
 
@@ -284,21 +291,51 @@ def ask_card(
         answers |= _asked_speeds(ask, shown)
     channel, unit = f"{_OF_GAUGE}channel", f"{_OF_GAUGE}unit"
     if channel not in answers:
-        answers[channel] = ask("Channel of the shaft torque", click.STRING, shown.get(channel, "M_s"))
+        answers[channel] = ask("Channel of the shaft torque", _channel, shown.get(channel, "M_s"))
     if unit not in answers:
         answers[unit] = ask("Its unit", click.Choice(["V", "N m", "kN m"]), shown.get(unit, "N m"))
     if answers[unit] == "V" and f"{_OF_GAUGE}scale_nm_per_unit" not in answers:
         answers[f"{_OF_GAUGE}scale_nm_per_unit"] = ask("Torque for one volt [N m]", click.FLOAT, None)
     if "set_point_channel" not in answers:
         lever = shown.get("set_point_channel", "U_setpoint")
-        answers["set_point_channel"] = ask("Channel of the lever's set point", click.STRING, lever)
+        answers["set_point_channel"] = ask("Channel of the lever's set point", _channel, lever)
     of_lever = answers.get("lever_unit") or ask("Its unit", click.Choice(_LEVER), shown.get("lever_unit", "V"))
     answers["lever_unit"] = of_lever
     if "lever_pairs" not in answers and of_lever != "rpm":
         answers["lever_pairs"] = _asked_lever(ask, of_lever)
-    if "sample_rate_hz" in shown:
-        answers.setdefault("sample_rate_hz", shown["sample_rate_hz"])
+    if "sample_rate_hz" not in answers:
+        answers |= _asked_rate(ask, answers, shown)
     return answers
+
+
+def _asked_rate(
+    ask: Callable[[str, Any, Any], Any], answers: Mapping[str, Any], shown: Mapping[str, Any]
+) -> dict[str, float]:
+    """Return the rate of the logger: that of a recording, else asked for where the pulses of a pick-up need one."""
+    if "sample_rate_hz" in shown:
+        return {"sample_rate_hz": shown["sample_rate_hz"]}
+    card = card_of(answers)
+    least_hz = 0.0 if card is None else least_rate_hz(card)
+    if card is None or not least_hz:
+        return {}
+    words = f"Samples a second of the logger [Hz], at least {least_hz:g} for the pick-up"
+    return {"sample_rate_hz": ask(words, lambda text: _rate(text, card), None)}
+
+
+def _rate(text: str, card: Card) -> float:
+    """Return the rate of a logger; one that does not show the pulses of the card fails."""
+    rate_hz = _Positive("Hz").convert(text, None, None)
+    hidden = pulses_not_shown(replace(card, sample_rate_hz=rate_hz))
+    if hidden:
+        raise click.BadParameter(f"{hidden[0]}. Log faster, or begin again with a wheel of fewer teeth (Ctrl+C).")
+    return rate_hz
+
+
+def _channel(text: str) -> str:
+    """Return the title of a channel; a word that says that there is none fails."""
+    if text.strip().lower() in _NO_CHANNEL:
+        raise click.BadParameter(f"expected a channel of the logger, found '{text}'; without it nothing is identified.")
+    return text.strip()
 
 
 def _asked_speeds(ask: Callable[[str, Any, Any], Any], shown: Mapping[str, Any]) -> dict[str, Any]:
@@ -307,9 +344,9 @@ def _asked_speeds(ask: Callable[[str, Any, Any], Any], shown: Mapping[str, Any])
     if in_rpm:
         return in_rpm
     answers: dict[str, Any] = {}
-    first = next((one.channel for field in _PULSES for one in shown.get(field, ())), "PTM_e")
-    words = "Speed of the engine, CHANNEL=PULSES a turn of a pick-up, or CHANNEL=rpm"
-    typed = ask(words, speed, f"{first}=1")
+    first = next((one.channel for field in _PULSES for one in shown.get(field, ())), ASSUMED_PULSES.channel)
+    words = f"Pulses a turn of the engine's pick-up {first}, such as 1 or 60-2; or CHANNEL=PULSES, or CHANNEL=rpm"
+    typed = ask(words, lambda text: speed(text if "=" in text else f"{first}={text}"), None)
     answers["engine_speeds" if isinstance(typed, str) else "engine_pulses"] = (typed,)
     others = [one.channel for one in shown.get("shaft_pulses", ()) if one.channel != first]
     if others:
@@ -331,6 +368,7 @@ def _asked_lever(ask: Callable[[str, Any, Any], Any], unit: str) -> tuple[tuple[
 
 
 _NONE = "none"
+_NO_CHANNEL = ("none", "no", "-", "n/a", "?")
 _IN_RPM = ("rpm", "1/min", "min-1")
 
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
+import click
+
 from shaftprint.cli._terminal import answer, print_findings
 from shaftprint.late import late
 
 with late():
     from shaftprint.card._card import ASSUMED_PULSES, Card
     from shaftprint.card._disagreements import disagreements
+    from shaftprint.card._logger_rate import pulses_not_shown
     from shaftprint.card._write import write_vessel
     from shaftprint.vessel._vessel import Vessel, load_vessel
 
@@ -45,12 +48,25 @@ def write_from_card(
     """Write the vessel file that follows from a card; whether it agrees with itself, and what it assumes, is said.
 
     ``stated``: channels that were named for it. ``recording``, ``channels``: the recording that is there, and what it
-    has; nothing where it cannot be read.
+    has; nothing where it cannot be read. Raises click.UsageError, and writes nothing, if the logger does not show the
+    pulses of a pick-up and no recording says how it took them.
     """
+    hidden = [] if channels else pulses_not_shown(card)
+    if hidden:
+        raise click.UsageError(
+            f"{hidden[0]}; state its samples a second, --sample-rate. Where a counter lists the edges, state that many "
+            "and leave [logger] out of the file that is written."
+        )
     print_disagreements(write_vessel(card, path), str(path))
     answer(
         f"{path}: a vessel file from the main particulars; its comments say what was derived and what is usual only."
     )
+    if not card.lever.pairs and card.lever.unit != "rpm":
+        sentence = (
+            f"{card.set_point_channel}: which engine speed it asks for is not known. Read it at two speeds and state "
+            "them, sensors.set_point.table_rpm (--lever twice), or give `plan` its slope and offset."
+        )
+        print_findings("Lever to be filled in", [sentence], is_answer=True)
     sensors = _sensors_of(card)
     known = channels or stated
     open_ones = [f"{channel} as {use}" for channel, use in sensors if channel not in known]

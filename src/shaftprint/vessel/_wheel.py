@@ -59,6 +59,10 @@ class Wheel:
         """Teeth that there would be all around if they stood as close as the closest two."""
         return 2 * self.places if self.extra else self.places
 
+    def is_shown(self, *, rate_hz: float, turns_hz: float) -> bool:
+        """Return whether a logger shows each tooth at so many turns a second, both in Hz."""
+        return SAMPLES_A_TOOTH * self.closest * turns_hz <= rate_hz
+
     def least_rate_hz(self, turns_hz: float) -> float:
         """Return the lowest sample rate at which teeth are seen [Hz], a round number.
 
