@@ -75,6 +75,24 @@ def test_a_gear_ratio_is_told_by_the_orders_of_the_other_shaft():
         assert (reason.kind, fitting) == (kind, pytest.approx(3.9, rel=5e-4))
 
 
+@pytest.mark.parametrize("factor", [7 / 9, 1.2, 1.4])
+@pytest.mark.parametrize("pulses", [12, 60])
+def test_a_ratio_that_is_far_off_is_none_of_the_speed(factor, pulses):
+    """An order of firing stands where 5/2 would by a factor of 1.2, and 12 pulses would be 10: more lines tell."""
+    engine = {0.5: 0.03, 3.0: 0.03}
+    (reason,) = reasons_of(vessel_of("engine", pulses), ratio=RATIO / factor, engine=engine)
+    fitting = float(reason.sentence.split("3.82 is stated, ")[1].split()[0])
+    assert (reason.kind, fitting) == ("gear ratio", pytest.approx(RATIO / factor, rel=1e-3))
+    assert "pulses_per_revolution" not in reason.sentence
+
+
+@pytest.mark.parametrize("pulses", [10, 14])
+def test_a_count_that_is_far_off_is_none_of_the_gears(pulses):
+    engine = {0.5: 0.03, 3.0: 0.03}
+    (reason,) = reasons_of(vessel_of("engine", 12), shown=pulses / 12, engine=engine)
+    assert (reason.kind, f"12 is stated, {pulses} would fit" in reason.sentence) == ("speed scale", True)
+
+
 @pytest.mark.parametrize("shaft", ["engine", "propeller"])
 @pytest.mark.parametrize(
     "orders",

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from shaftprint.vessel._sensors import SpeedSensor
     from shaftprint.vessel._vessel import Vessel
 
-# A factor farther from 1 shows in mean speed and torque; the logarithm.
-_FARTHEST = 0.2
+# A factor of the speed farther from 1 shows in mean speed and torque, and one of the gears need not; the logarithm.
+_FARTHEST, _FARTHEST_OF_GEARS = 0.2, 0.5
 # How exact turns that are counted are, a gear ratio of three digits, and an instrument that counts nothing.
 _OF_COUNT, _OF_RATIO, _OF_INSTRUMENT = 5e-4, 3e-3, 0.015
 _FEWEST, _SHARE = 2, 0.6
@@ -78,14 +78,23 @@ def reasons_of_orders(
     own = [order for order in orders if order.shaft == sensor.shaft or vessel.gearbox.ratio == 1.0]
     other = [order for order in orders if order not in own]
     of_own, of_other = _multiples(lines, own, exact), _multiples(lines, other, exact + _OF_RATIO)
-    found = _best(lines, orders, exact=exact + _OF_RATIO, belonging=of_own | of_other)
-    if found is not None and any(order in own for order in found.orders) and not _is_no_wheel(found, sensor):
-        return (_of_speed(found, speed, vessel),)
+    of_speed = _best(lines, orders, exact=exact + _OF_RATIO, belonging=of_own | of_other)
+    if of_speed is not None and (not {*of_speed.orders} & {*own} or _is_no_wheel(of_speed, sensor)):
+        of_speed = None
     apart = _of(lines, ~of_own)
-    if _explained(apart, other, 1.0, exact=exact + _OF_RATIO).lines:
-        return ()
-    found = _best(apart, other, exact=exact, belonging=of_other[~of_own])
-    return () if found is None else (_of_gears(found, sensor, speed, vessel, is_own=bool(of_own.any())),)
+    as_stated = bool(_explained(apart, other, 1.0, exact=exact + _OF_RATIO).lines)
+    of_gears = (
+        None
+        if as_stated
+        else _best(apart, other, exact=exact, belonging=of_other[~of_own], farthest=_FARTHEST_OF_GEARS)
+    )
+    if of_speed is not None and of_gears is not None:
+        # one of them stands where an order of the other cause would: what explains more lines is the cause
+        own_lines = _explained(lines, own, 1.0, exact=exact).lines
+        of_speed = of_speed if len(of_speed.lines) > len(of_gears.lines) + len(own_lines) else None
+    if of_speed is not None:
+        return (_of_speed(of_speed, speed, vessel),)
+    return () if of_gears is None else (_of_gears(of_gears, sensor, speed, vessel, is_own=bool(of_own.any())),)
 
 
 def _multiples(lines: OrderLines, orders: "Sequence[Order]", exact: float) -> "BoolArray":
@@ -119,19 +128,27 @@ def _explained(lines: OrderLines, orders: "Sequence[Order]", factor: float, *, e
     )
 
 
-def _best(lines: OrderLines, orders: "Sequence[Order]", *, exact: float, belonging: "BoolArray") -> _Explained | None:
+def _best(
+    lines: OrderLines,
+    orders: "Sequence[Order]",
+    *,
+    exact: float,
+    belonging: "BoolArray",
+    farthest: float = _FARTHEST,
+) -> _Explained | None:
     """Return the factor that explains most of the lines by orders; None where none explains enough.
 
-    ``belonging``: which lines stand where something belongs already, shape (lines,).
+    ``belonging``: which lines stand where something belongs already, shape (lines,). ``farthest``: the largest
+    logarithm of a factor.
     """
     pairs = ((line, order.per_engine_turn) for order in orders for line in lines.order.tolist())
-    factors = [line / turns for line, turns in pairs if abs(math.log(line / turns)) < _FARTHEST]
+    factors = [line / turns for line, turns in pairs if abs(math.log(line / turns)) < farthest]
     found = (_explained(lines, orders, factor, exact=exact) for factor in factors)
     apart = [one for one in found if abs(one.factor - 1.0) > one.error + exact]
     best = max(apart, key=lambda one: (len(one.lines), one.size), default=None)
     if best is None:
         return None
-    lowest = min(order.per_engine_turn for order in orders) * math.exp(-_FARTHEST)
+    lowest = min(order.per_engine_turn for order in orders) * math.exp(-farthest)
     total = float(lines.size[lines.order > lowest].sum())
     if best.size < _SHARE * total or np.count_nonzero(~belonging[list(best.lines)]) < _FEWEST:
         return None
