@@ -9,6 +9,7 @@ ReasonKind: TypeAlias = Literal[
     "held samples",
     "set-point band",
     "late set point",
+    "late pitch feedback",
     "clipping",
     "gauge steadiness",
     "engine limit",

@@ -116,6 +116,7 @@ def gauge_pitch() -> Structure:
                 unit="-",
                 of=lambda p: p["q"] * p["c_th"],
                 meaning="change of torque over the change of pitch that is asked for",
+                role=ShipRole.ASKED_PITCH_SLOPE,
             ),
         ),
     )
@@ -147,6 +148,7 @@ def gauge_combinator() -> Structure:
                 unit="-",
                 of=lambda p: p["q"] * p["c_comb"],
                 meaning="change of torque by the pitch over the change of speed that is asked for",
+                role=ShipRole.ASKED_PITCH_SLOPE,
             ),
         ),
     )
@@ -182,4 +184,5 @@ _PITCH_LAG = Combination(
     unit="s",
     of=lambda p: p["t_th"] + p["tau_th"],
     meaning="lag of the pitch behind its set point",
+    role=ShipRole.PITCH_TOTAL,
 )

@@ -137,14 +137,18 @@ class ShipRole:
     """Slope of the propeller torque with its pitch, ``d ln K_Q / d ln theta``."""
     PITCH_LAG: Final = _line("pitch lag", "s", "delay")
     """Time constant with which a controllable pitch follows its set point."""
-    PITCH_DELAY: Final = _line("pitch delay", "s", "delay")
+    PITCH_DELAY: Final = _line("pitch delay", "s", "delay", "pitch clock")
     """Time after which it begins to follow."""
+    PITCH_TOTAL: Final = _line("total pitch lag", "s", "delay", "pitch clock")
+    """Both together, a combination."""
     BLADE_LATENESS: Final = _line("blade lateness", "s", "delay", "latency")
     """Time by which the blades of a controllable pitch follow what is shown of it."""
     PITCH_SCALE: Final = _line("pitch scale", "-", "load")
     """Change of pitch that is reached over that which is asked for."""
     COMBINATOR_SLOPE: Final = _line("combinator slope", "-", "load")
     """Change of pitch that is reached over the change of speed that a lever asks for together with it."""
+    ASKED_PITCH_SLOPE: Final = _line("slope of the asked pitch", "-", "load")
+    """Slope of the propeller torque with the pitch that is asked for, a combination."""
     PITCH_SENSOR_SCALE: Final = Role(name="pitch sensor scale", unit="-", basis=frozenset(("load",)), of_sensor=True)
     """Change of pitch that is shown over that which is reached."""
     TORQUE: Final = _line("torque", "", "torque")

@@ -12,6 +12,7 @@ from shaftprint.identify.judgement._clock_drift import unseen_drift
 from shaftprint.identify.search._conditional_minimum import Conditional
 from shaftprint.identify.uncertainty._profile import Interval
 from shaftprint.models._combination import Combination
+from shaftprint.models._role import Role
 from shaftprint.spelling import listed
 from shaftprint.units import MILLI, PERCENT
 
@@ -57,6 +58,8 @@ def _assumptions(
             f"governor sees and {channel}: {_widths(identification)}a constant shift of {channel} against the other "
             "channels shows in nothing else."
         )
+    if ShipRole.PITCH_DELAY in by_role and sensors.pitch is not None:
+        yield from _of_pitch(identification, by_role, vessel)
     if by_role.get(ShipRole.INERTIA_UPSTREAM) in identification.settings.priors:
         yield from _of_engine_side(identification, vessel, margins, intervals)
     scale = sensors.shaft_torque.scale_std
@@ -68,6 +71,28 @@ def _assumptions(
     if vessel.taken_as_usual:
         yield (
             f"The vessel file does not state, and as usual is taken: {'; '.join(vessel.taken_as_usual)}. State them."
+        )
+
+
+def _of_pitch(identification: "Identification", by_role: Mapping[Role | None, str], vessel: "Vessel") -> Iterator[str]:
+    """Return what rests on the clocks and scales of the pitch and of what asks for it."""
+    sensors, names = vessel.sensors, [one.name for one in identification.parameters]
+    moved = sensors.pitch_set_point if ShipRole.PITCH_SCALE in by_role else sensors.set_point
+    if moved is None or sensors.pitch is None:
+        return
+    asked, shown = moved.channel, sensors.pitch.channel
+    late = [by_role[ShipRole.PITCH_DELAY]]
+    late += [c.name for c in identification.structure.combinations if c.role == ShipRole.PITCH_TOTAL]
+    yield (
+        f"{listed(late)} {'rest' if late[1:] else 'rests'} on the clocks of {asked} and {shown}, and on no filter in "
+        f"either: that {asked} is late, or {shown} early, shows in nothing else."
+    )
+    slopes = (ShipRole.PITCH_SCALE, ShipRole.COMBINATOR_SLOPE, ShipRole.PITCH_SLOPE)
+    scaled = [by_role[role] for role in slopes if by_role.get(role) in names]
+    if scaled:
+        yield (
+            f"{listed(scaled)} {'rest' if scaled[1:] else 'rests'} on the scales of {asked} and {shown}; one that is "
+            "off by more than the vessel file allows shows in nothing else."
         )
 
 

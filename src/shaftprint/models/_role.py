@@ -12,11 +12,13 @@ from typing import Literal, TypeAlias
 from shaftprint.normalisation import Normalisation
 
 Basis: TypeAlias = Literal[
-    "torque", "level", "inertia", "load", "governor", "delay", "clock", "latency", "speed", "set point", "size"
-]
+    "torque", "level", "inertia", "load", "governor", "delay", "clock", "pitch clock", "latency", "speed", "set point",
+    "size",
+]  # fmt: skip
 """What a number is made of: torque in N m; its level at the working point, which its changes do not tell; inertia over
 torque; slope of the load; governor and engine, which are told apart with the upstream inertia; the sum of the delays;
-the clock of the logged set point; the latency of the gauge; the speed; the set-point line; the propeller's diameter."""
+the clock of the logged set point; that of the logged pitch beside what asks for it; the latency of the gauge; the
+speed; the set-point line; the propeller's diameter."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

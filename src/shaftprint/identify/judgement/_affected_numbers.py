@@ -26,7 +26,8 @@ AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
     "speed scale": (ALL, "it depends on a speed that is off by one factor"),
     "held samples": (ALL - {"speed"}, "it depends on a channel that keeps its last value"),
     "set-point band": (frozenset(("delay", "governor")), "it depends on a set point that its channel shows late"),
-    "late set point": (frozenset(("clock",)), "it depends on a set point that its channel shows late"),
+    "late set point": (frozenset(("clock", "pitch clock")), "it depends on a set point that its channel shows late"),
+    "late pitch feedback": (frozenset(("pitch clock",)), "it depends on a pitch that its channel shows late"),
     "clipping": (ALL - {"speed"}, "it depends on a torque that is clipped"),
     "gauge steadiness": (
         ALL - {"speed", "set point", "delay", "clock"},

@@ -1,5 +1,7 @@
 """The reasons for which a fit is not trustworthy, each a sentence where it holds and nothing where it does not."""
 
+from collections.abc import Mapping
+
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import stated
 from shaftprint.identify.fit._identification import Identification
@@ -9,8 +11,23 @@ from shaftprint.identify.judgement._line_quality import gap_at_crossing
 from shaftprint.identify.judgement._misfit import explained, misfit_words
 from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._search_words import rival_words
-from shaftprint.reasons import Reason
+from shaftprint.models._role import Role
+from shaftprint.reasons import Reason, ReasonKind
 from shaftprint.spelling import listed
+
+_LATE: Mapping[Role, tuple[ReasonKind, str]] = {
+    ShipRole.SET_POINT_LATENCY: (
+        "late set point",
+        "The set point comes late: {one.name} is {found}, for speed and torque answer before the logged set point "
+        "moves; look for what delays its channel, such as a gateway or its clock.",
+    ),
+    ShipRole.BLADE_LATENESS: (
+        "late pitch feedback",
+        "The pitch comes late: {one.name} is {found}, for the torque answers before the logged pitch moves; state by "
+        "how much as latency_s of the pitch feedback, or look for what delays its channel, such as a filter.",
+    ),
+}
+"""What a latency below nothing says of the channel behind which it is."""
 
 
 def too_few_good_data(evidence: Evidence) -> str:
@@ -84,24 +101,18 @@ def _stopped(fit: Identification) -> str:
     return f" {listed(names)} stopped at {bounds}: the data would go on."
 
 
-def late_set_points(evidence: Evidence) -> tuple[Reason, ...]:
-    """Return that the line answers before the set point moves, beyond chance: its channel comes late.
+def late_channels(evidence: Evidence) -> tuple[Reason, ...]:
+    """Return that the line answers before its set point, or its pitch, is shown to move: the channel comes late.
 
-    Nothing but the latency of the set point and the sum of the delays depends on it. Its profile decides: a standard
-    deviation tells little at the end of a valley.
+    Nothing but a delay behind that channel depends on it, and the sums that hold the delay. Its profile decides: a
+    standard deviation tells little at the end of a valley.
     """
     intervals = {} if evidence.profile is None else evidence.profile.intervals
     return tuple(
-        Reason(
-            kind="late set point",
-            where=one.name,
-            sentence=f"The set point comes late: {one.name} is {stated(one.value, one.std, one.unit)}, for speed and "
-            "torque answer before the logged set point moves; look for what delays its channel, such as a gateway or "
-            "its clock.",
-        )
+        Reason(kind=kind, where=one.name, sentence=words.format(found=stated(one.value, one.std, one.unit), one=one))
+        for role, (kind, words) in _LATE.items()
         for one in evidence.identification.parameters
-        if one.role == ShipRole.SET_POINT_LATENCY
-        and (intervals[one.name].upper if one.name in intervals else one.limits_95[1]) < 0.0
+        if one.role == role and (intervals[one.name].upper if one.name in intervals else one.limits_95[1]) < 0.0
     )
 
 

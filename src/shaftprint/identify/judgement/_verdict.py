@@ -29,7 +29,7 @@ from shaftprint.identify.judgement._evidence import Evidence
 from shaftprint.identify.judgement._fit_reasons import (
     better_when_unstable,
     gap_where_it_matters,
-    late_set_points,
+    late_channels,
     not_explained,
     not_unique,
     too_few_good_data,
@@ -72,6 +72,7 @@ BEFORE_DRIFT: frozenset[ReasonKind] = frozenset(
         "held samples",
         "set-point band",
         "late set point",
+        "late pitch feedback",
         "gauge latency",
         "speed scale",
         "gauge scale",
@@ -171,7 +172,7 @@ def assess(
     suspects = tuple(suspect for suspect in suspects if suspect.share > explained_share)
     hints = tuple(Reason(kind="suspect", sentence=suspect.sentence) for suspect in suspects)
     of_data = tuple(reason for part in identification.experiments for reason in part.response.reasons)
-    late = late_set_points(evidence)
+    late = late_channels(evidence)
     is_explained = any(reason.kind in BEFORE_DRIFT for reason in (*of_data, *reasons, *late))
     drifts = () if is_explained else drift_reasons(identification)
     pulled = contradicted_priors(identification)

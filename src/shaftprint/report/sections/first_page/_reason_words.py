@@ -67,6 +67,10 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
         "The speed set point was logged late.",
         "Ask what delays its channel, such as a gateway; gains and margins do not depend on it.",
     ),
+    "late pitch feedback": (
+        "The pitch was logged late.",
+        "State latency_s of the pitch feedback, or ask what delays its channel; gains and margins do not depend on it.",
+    ),
     "set-point scale": (
         "The scale of the speed set point is in doubt.",
         "Add a staircase of speed steps to the test, or check the wiring of the set point.",
