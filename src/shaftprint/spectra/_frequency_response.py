@@ -78,6 +78,9 @@ class FrequencyResponse(Shown, Labelled):
     input_drift: float | None = None
     """Time that the input loses a second against what was asked for [-], by the clock of its channel or of whoever put
     it out; None where that is not known to a few millionths."""
+    input_jump_s: FloatArray = field(default_factory=lambda: np.empty(0))
+    """By how much later each line of the input came than the first, against what was asked for, where all after one
+    instant did, shape (lines,) [s]; empty where none did."""
 
     @property
     def weight_factors(self) -> FloatArray:
@@ -157,6 +160,7 @@ class FrequencyResponse(Shown, Labelled):
             ("degrees_of_freedom", frozen_float(dof), one_a_line),
             ("used", frozen_bool(used), one_a_line),
             ("middle_s", frozen_float(self.middle_s), one_a_line if np.size(self.middle_s) else (0,)),
+            ("input_jump_s", frozen_float(self.input_jump_s), one_a_line if np.size(self.input_jump_s) else (0,)),
             ("load", frozen_complex(load) if np.iscomplexobj(load) else frozen_float(load), one_a_line),
         ):
             _expect_shape(name, array, shape)
@@ -279,6 +283,7 @@ class FrequencyResponse(Shown, Labelled):
             remarks={name: remark for name, remark in self.remarks.items() if name in names},
             load=self.load[places],
             middle_s=self.middle_s[places] if self.middle_s.size else self.middle_s,
+            input_jump_s=self.input_jump_s[places] if self.input_jump_s.size else self.input_jump_s,
             common={name: part[:, :, places] for name, part in self.common.items()},
         )
 

@@ -18,7 +18,7 @@ from shaftprint.spectra._speed_ratios import SpeedRatio, speed_ratios
 from shaftprint.spectra.lines._clock_check import clock_reasons
 from shaftprint.spectra.lines._harmonics import Harmonics, collect_harmonics
 from shaftprint.spectra.lines._input_band import band_of_lines, band_reasons
-from shaftprint.spectra.lines._input_clock import drift_of_input
+from shaftprint.spectra.lines._input_clock import drift_of_input, jump_of_input
 from shaftprint.spectra.lines._line_fit import SineMethod, WindowSamples, cut_window, window_slice
 from shaftprint.spectra.lines._line_measurement import LineMeasurement, measure_line
 from shaftprint.spectra.lines._load_drift import LoadDrift, load_drift
@@ -162,6 +162,7 @@ def estimate_spectra(
             reasons=(*signals.reasons, *against, *of_band),
             input_late_s=None if band is None or band.late_s else band.widest_s,
             input_drift=None if thesis else drift_of_input(measurements, campaign.sines, moved),
+            input_jump_s=np.empty(0) if thesis else jump_of_input(measurements, campaign.sines, moved),
         ),
         windows=tuple(line.window for line in measurements),
         signal_to_noise=ratios,

@@ -121,7 +121,7 @@ def misfit_of(identification: Identification) -> tuple[FloatArray, FloatArray]:
             experiment.structure_values(identification.values), experiment.s, factors=experiment.factors
         )
         part_slopes = np.zeros((part.whitened.size, len(objective.free)))
-        part_slopes[:, list(experiment.columns)] = np.array([_whitened(experiment, slope) for slope in gradient]).T
+        part_slopes[:, list(experiment.columns)] = np.array([whitened(experiment, slope) for slope in gradient]).T
         parts.append(part.whitened.ravel())
         slopes.append(part_slopes)
     theta = identification.values[list(objective.free)]
@@ -147,12 +147,12 @@ def gathered_causes(identification: Identification) -> list[tuple[Cause, FloatAr
         for one in causes_of(experiment, identification.values):
             cause = replace(one, share=float(np.max(np.abs(one.effect) / model)))
             _, direction = causes.setdefault(cause.words, (cause, np.zeros(total)))
-            direction[first : first + size] = _whitened(experiment, cause.effect)
+            direction[first : first + size] = whitened(experiment, cause.effect)
         first += size
     return [(cause, direction) for cause, direction in causes.values() if direction.any()]
 
 
-def _whitened(experiment: Experiment, channels: ComplexArray) -> FloatArray:
+def whitened(experiment: Experiment, channels: ComplexArray) -> FloatArray:
     """Return ``L^-1 [Re, Im]`` of the fitted lines, one line after the other."""
     parts = np.concatenate([channels.real, channels.imag]).T
     root = np.linalg.cholesky(experiment.covariance)

@@ -36,6 +36,7 @@ from shaftprint.identify.judgement._fit_reasons import (
     unstable,
 )
 from shaftprint.identify.judgement._hold_out_lines import not_predicted
+from shaftprint.identify.judgement._input_jump import jump_reasons
 from shaftprint.identify.judgement._number_precision import KNOWN_POORLY, doubts_of, share_of
 from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._prior_contradictions import beyond_priors, contradicted_priors
@@ -174,7 +175,7 @@ def assess(
     of_data = tuple(reason for part in identification.experiments for reason in part.response.reasons)
     late = late_channels(evidence)
     is_explained = any(reason.kind in BEFORE_DRIFT for reason in (*of_data, *reasons, *late))
-    drifts = () if is_explained else drift_reasons(identification)
+    drifts = () if is_explained else jump_reasons(identification) or drift_reasons(identification)
     pulled = contradicted_priors(identification)
     every = by_weight((*of_data, *reasons, *late, *drifts, *pulled, *of_fit, *hints))
     if rejected and identification.is_likelihood and beyond_priors(identification):
