@@ -6,8 +6,7 @@ import pytest
 from shaftprint.campaign import load_campaign
 from shaftprint.recording import read_recording
 from shaftprint.survey import run
-from shaftprint.tug import sail
-from shaftprint.tug._like_stan_tug import like_stan_tug_1205, with_lever_of
+from shaftprint.tug import like_stan_tug_1205, sail
 from shaftprint.vessel import load_vessel
 
 pytestmark = pytest.mark.slow
@@ -28,7 +27,7 @@ def _apart(fingerprint, name, true):
 def test_a_pitch_that_is_logged_late_costs_its_delay_alone(tmp_path):
     vessel, campaign, path = load_vessel("nifs-research-vessel"), load_campaign("pitch"), tmp_path / "pitch.nc"
     late = _with_latency(vessel, vessel.sensors.pitch.latency_s + 0.02)
-    truth = sail(late, campaign, path, seed=3, tug=with_lever_of(like_stan_tug_1205(vessel), vessel, campaign))
+    truth = sail(late, campaign, path, seed=3, tug=like_stan_tug_1205(vessel))
     with read_recording(path) as recording:
         stated, unknown = (
             run(recording, one, campaign, judge=False, rng=np.random.default_rng(1)).fingerprint
