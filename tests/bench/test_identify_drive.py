@@ -102,7 +102,7 @@ def test_servo_without_its_friction_is_refused(tmp_path, run_program):
     held = '\n[[known]]\nname = "T_C"\nvalue = 0.0\n'
     (tmp_path / "servo.toml").write_text(SERVO_TOML.split("[[searched]]")[0] + held, encoding="utf-8")
     result = run_program("identify", moves, "--drive", tmp_path / "servo.toml", "-o", tmp_path / "result")
-    assert result.exit_code == 0, result.output
+    assert result.exit_code == 3, result.output
     assert result.output.startswith("Verdict: not trustworthy\n")
 
 
@@ -157,6 +157,7 @@ def test_masses_that_turn_freely_begin_in_states_that_are_found(tmp_path, run_pr
         {"torque [N m]": torque, "motor [rad/s]": motion[:, 0], "load [rad/s]": motion[:, 1]},
     )
     (tmp_path / "shaft.toml").write_text(FREE + "inputs_hold = true\n", encoding="utf-8")
+    # of four starts one arrives: nothing is trusted, though it is the truth
     result = run_program(
         "identify",
         tmp_path / "free.csv",
@@ -167,7 +168,7 @@ def test_masses_that_turn_freely_begin_in_states_that_are_found(tmp_path, run_pr
         "-o",
         tmp_path / "result",
     )
-    assert result.exit_code == 0, result.output
+    assert result.exit_code == 3, result.output
     fingerprint = read_drive_fingerprint(tmp_path / "result" / "fingerprint.json")
     truth = {"J_1": j_1, "J_2": j_2, "k_s": stiffness, "d_s": damping}
     expect_truth(fingerprint, truth, ("J_1", "J_2", "k_s"))

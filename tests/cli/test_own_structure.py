@@ -96,7 +96,7 @@ def written(tmp_path, monkeypatch):
 def test_an_own_structure_is_fitted_from_the_command_line(run, recording, written, tmp_path):
     written(CORE)
     result = run("identify", recording, *GIVEN, "--structure", "my_ship.py:my_core", "-o", tmp_path / "out")
-    assert result.exit_code == 0, result.stderr
+    assert result.exit_code == 3, result.stderr
     found = read_fingerprint(tmp_path / "out" / "fingerprint.json")
     assert found.structure == "MY-CORE"
     # the truth of the simulated tug, 17 kg m2 behind the gauge at its working point, and a quadratic propeller

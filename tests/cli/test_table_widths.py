@@ -14,7 +14,8 @@ def tables_of(run):
     def call(*arguments):
         with printed_tables() as printed:
             result = run(*arguments)
-        assert result.exit_code == 0, result.stderr
+        # a model that fails has tables as well
+        assert result.exit_code in (0, 3), result.stderr
         return printed(result.stdout)
 
     return call

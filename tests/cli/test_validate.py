@@ -20,7 +20,7 @@ GIVEN = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")
 @pytest.mark.slow
 def test_identified_in_one_go_with_the_sets_of_the_thesis(run, recording):
     result = run("validate", recording, *GIVEN, "--starts", 20, "--thesis-sets", "--linear-torque")
-    assert result.exit_code == 0, result.stderr
+    assert result.exit_code == 3, result.stderr
     heading = next(line for line in result.output.splitlines() if "right model" in line and "benchmark" in line)
     assert [name for name in ("GAUGE-CLOSED", "CL4", "OL1+OL5", "CL3", "OL1+OL4", "benchmark") if name in heading] == [
         "GAUGE-CLOSED",
@@ -34,10 +34,10 @@ def test_identified_in_one_go_with_the_sets_of_the_thesis(run, recording):
 
 
 @pytest.mark.slow
-def test_a_failed_validation_is_said_in_words_and_exits_with_0(run, recording):
+def test_a_failed_validation_is_said_in_words_and_exits_with_3(run, recording):
     # a governor that is three times too weak
     result = run("validate", recording, *GIVEN, "--starts", 20, "--hold", "K_i=1.0", "--hold", "K_p=1.0")
-    assert result.exit_code == 0
+    assert result.exit_code == 3
     assert result.output.startswith("Validation: the linear model ")
     words = r"The linear validation fails: GAUGE-CLOSED misses more than 15 % of the motion in \d+ of 8 excerpts"
     assert re.search(words, result.output)
@@ -71,8 +71,9 @@ def test_the_fmu_of_a_fingerprint_is_judged_as_the_fingerprint_is(run, recording
     path = tmp_path / "yard.fmu"
     assert run("export", "fmu", demo[0], "--linear", "-o", path, "--no-progress").exit_code == 0
     by_fmu = run("validate", recording, *GIVEN, "--model", path)
-    assert by_fmu.exit_code == 0, by_fmu.stderr
     own = run("validate", recording, *GIVEN, "--fingerprint", demo[0], "--linear", "--linear-torque")
+    # a line about a working point fails the large steps
+    assert (by_fmu.exit_code, own.exit_code) == (3, 3), by_fmu.stderr
     fit = re.compile(r"\b\d\d\.\d\b")
     assert "yard.fmu" in by_fmu.output
     assert len(fit.findall(own.output)) > 4

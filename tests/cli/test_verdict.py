@@ -44,7 +44,7 @@ def test_a_structure_that_does_not_fit_is_not_trustworthy(run, recording, tmp_pa
     given = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress", "--starts", 20)
     structures = ("--structure", "CL4", "--structure", "CL3")
     result = run("identify", recording, *given, *structures, "-o", tmp_path / "out")
-    assert result.exit_code == 0
+    assert result.exit_code == 3
     lines = result.output.splitlines()
     assert lines[0] == "Verdict: not trustworthy"
     assert lines[1].startswith("  * The structure CL4 does not explain the data within their noise (chi-square ")

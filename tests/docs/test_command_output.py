@@ -10,6 +10,7 @@ from click.testing import CliRunner
 from pages import PAGES
 
 from shaftprint.cli import commands, shaftprint
+from shaftprint.cli._command_group import NOT_REACHED
 
 COMMANDS = Path(commands.__file__).parent
 PAGE = PAGES["docs/command-output.md"]
@@ -44,15 +45,15 @@ def told_with(code):
 
 
 def test_every_exit_code_of_a_command_is_in_the_table():
-    """A command leaves by ``context.exit`` with a named code; which names there are is read from its file."""
+    """A command leaves by ``context.exit`` with a named code, or with a no; which there are is read from its file."""
     ending: dict[int, set[str]] = {}
     for path in COMMANDS.rglob("_*.py"):
-        names = re.findall(r"context\.exit\((\w+)", path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        names = re.findall(r"context\.exit\((\w+)", text)
         module = importlib.import_module(
             ".".join(("shaftprint.cli.commands", *path.relative_to(COMMANDS).with_suffix("").parts))
         )
-        for name in names:
-            value = getattr(module, name)
+        for value in [*(getattr(module, name) for name in names), *([NOT_REACHED] if "end_with_no()" in text else [])]:
             words = (*path.relative_to(COMMANDS).parent.parts, path.stem.removeprefix("_").replace("_", "-"))
             for code in value.values() if isinstance(value, dict) else (value,):
                 ending.setdefault(code, set()).add(" ".join(words))

@@ -121,7 +121,7 @@ def test_a_command_does_what_its_page_says(line, harbour, printed, ashore, witho
     else:
         folder = ashore(words)
         result = CliRunner().invoke(shaftprint, words, catch_exceptions=False)
-    assert result.exit_code == 0, result.output
+    assert result.exit_code in (0, 3), result.output
     assert result.stderr == ""
     for code_page in WINDOWS:
         # its tables have other rules there: tests/cli/test_code_pages.py

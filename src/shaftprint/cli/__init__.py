@@ -6,7 +6,7 @@ exit code meaning
 0         done
 1         an input or a file that the user can mend, said in one sentence on the error output
 2         an option or a command that does not exist
-3         done, and the answer is that what was asked for cannot be reached; the best that can is written
+3         done, with all that is found written, and the answer is no: the docs' page on output has the list
 130       interrupted with Ctrl-C; nothing is left half-written
 ========= ==========================================================================================
 

@@ -3,7 +3,7 @@
 import errno
 import importlib
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NoReturn
 
 import click
 
@@ -165,6 +165,11 @@ class CommandGroup(LazyGroup):
             raise
         print_document()
         return returned
+
+
+def end_with_no() -> NoReturn:
+    """End a command that has done its work, and whose answer is no."""
+    click.get_current_context().exit(NOT_REACHED)
 
 
 def _advice(error: click.ClickException) -> str:

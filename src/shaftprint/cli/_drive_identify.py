@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from shaftprint.cli._command_group import end_with_no
 from shaftprint.cli._drive_options import expect_not_given, is_given
 from shaftprint.cli._found import drive_sentences
 from shaftprint.cli._next import after_drive, print_next
@@ -74,6 +75,7 @@ def identify_on_the_bench(
         print_next(*after_drive(drive_file, results.output))
     else:
         print_next("compare-structures", *recordings, "--drive", drive_file)
+        end_with_no()
 
 
 def print_drive(fingerprint: DriveFingerprint, *, whole: bool = True) -> None:

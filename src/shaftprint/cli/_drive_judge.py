@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._command_group import end_with_no
 from shaftprint.cli._drive_options import is_given
 from shaftprint.cli._terminal import answer, print_findings, say
 from shaftprint.cli.output._fingerprint_file import drive_fingerprint_at
@@ -57,6 +58,8 @@ def validate_on_the_bench(
     if seen:
         say(f"A record was identified from too, {', '.join(seen)}: what it shows is no validation.")
     print_table(validated_drive_table(validated))
+    if failed:
+        end_with_no()
 
 
 def predict_on_the_bench(

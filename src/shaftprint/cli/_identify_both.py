@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from shaftprint.cli._command_group import end_with_no
 from shaftprint.cli._fingerprint_tables import print_found
 from shaftprint.cli._report_options import ReportOptions
 from shaftprint.cli._results import Report
@@ -92,6 +93,8 @@ def identify_both_lines(
         echo(f"Fingerprint of {side}: {results.output / side / FINGERPRINT}")
     if report is not None:
         echo(f"Comparison: {results.output / COMPARISON / REPORT}")
+    if not all(survey.fingerprint.verdict.trustworthy for survey in both.sides.values()):
+        end_with_no()
 
 
 def _print(both: SurveyOfBoth) -> None:

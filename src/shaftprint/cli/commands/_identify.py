@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._command_group import end_with_no
 from shaftprint.cli._drive_options import drive_option, only_recording
 from shaftprint.cli._fingerprint_tables import print_found
 from shaftprint.cli._fit_options import fit_options
@@ -218,6 +219,8 @@ def command(
         is_undecided=any(one.outcome == "undecided" for one in survey.validations[:1]),
     )
     print_steps(*following)
+    if not survey.fingerprint.verdict.trustworthy:
+        end_with_no()
 
 
 def _with_more(survey: Survey, more: str | None, *, rng: np.random.Generator, steps: Steps) -> Survey:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._command_group import end_with_no
 from shaftprint.cli._found_tests import print_found_tests, write_proposal
 from shaftprint.cli._inspect_headline import headline, is_good_enough, lines_of, lost_parts, of_propeller
 from shaftprint.cli._limit_uses import print_limit_uses
@@ -114,8 +115,8 @@ def command(
             _print_test(test, recording)
     _print_next(recording, reading, ("--vessel", vessel), campaign, output, test, good=good)
     # with the campaign as recorded what was asked for is there
-    if test is not None and test.refusal is not None and output is None:
-        raise test.refusal
+    if test is not None and output is None and not good:
+        end_with_no()
 
 
 def _first_step(recording: Path, reading: tuple[object, ...], seen: Sequence[Seen]) -> tuple[object, ...]:
@@ -256,7 +257,7 @@ def _print_answer(
         is_good = is_good_enough(test.parts, worst=worst)
         answer(headline(test.parts, planned=lines_of(test.planned), worst=worst, lost=lost))
         echo()
-        # said above; what refuses the test says the same once more, and ends the command
+        # said above
         problems = [problem for problem in problems if problem != worst]
         if worst and not problems:
             return is_good

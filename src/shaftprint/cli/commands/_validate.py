@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._command_group import end_with_no
 from shaftprint.cli._drive_judge import validate_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
 from shaftprint.cli._fit_options import fit_options
@@ -204,6 +205,8 @@ def command(
     if output is not None:
         echo(f"Figures: {output}")
     _print_next(recording, vessel, campaign, fingerprint, trial.vessel, first)
+    if first.outcome == "fails":
+        end_with_no()
 
 
 def _print_next(

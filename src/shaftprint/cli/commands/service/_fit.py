@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._command_group import end_with_no
 from shaftprint.cli._dates import Moment
 from shaftprint.cli._fingerprint_tables import print_found
 from shaftprint.cli._next import first_plan, free, print_next
@@ -95,6 +96,7 @@ def command(
     print_paths(output, report=False)
     if not day.fingerprint.verdict.trustworthy:
         print_next(*first_plan(vessel, installation))
+        end_with_no()
     elif fingerprint is None:
         print_next("service", "fit", "OTHER", "--vessel", vessel, "--fingerprint", output, "-o", free("other-day"))
     else:
