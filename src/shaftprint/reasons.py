@@ -1,5 +1,6 @@
 """Why numbers may not be trusted: one noun that every room can give, from the raw channel to the fit."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -58,3 +59,8 @@ class Reason:
     """What was expected, what was found and what to do, in one sentence."""
     where: str = ""
     """Channel, line or parameter concerned; empty where it is the whole recording or fit."""
+
+
+def doubt_scales(reasons: Iterable[Reason]) -> bool:
+    """Return whether a reason is of a scale that makes another torque of the engine's than it gives."""
+    return any(one.kind in ("speed scale", "gauge scale", "gear ratio") for one in reasons)

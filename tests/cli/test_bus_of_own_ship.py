@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from shaftprint.campaign import load_campaign
+from shaftprint.fingerprint._json_file import read_any_fingerprint
 from shaftprint.forecast import ShipBeforeTest, predict_test
 from shaftprint.vessel import load_vessel
 
@@ -124,3 +125,29 @@ def test_a_test_that_drives_the_engine_to_full_load_is_not_good_enough(run, ship
     result = run("identify", "sailed.nc", "--vessel", vessel, "--campaign", "test.toml", "-o", "found", "--no-progress")
     words = " ".join(result.output.split())
     assert words.startswith("Verdict: not trustworthy * By the vessel file the engine was at a limit: M1 beyond")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("by_orders", [True, False])
+def test_a_gear_ratio_that_no_sensor_shows_is_not_trusted_where_the_torque_contradicts_it(run, ship, by_orders):
+    """A bus has the speed of the engine alone: 4.03 for 5.04 makes all inertias 20 % small.
+
+    Blades stand in a torque that comes 100 times a second; of one that comes 20 times the size is left.
+    """
+    vessel = ship("0=600", "100=1600")
+    assert run("new", "campaign", "--test", "5min", "--vessel", vessel, "test.toml").exit_code == 0
+    rate_hz = 100 if by_orders else 20
+    messages = [word for one in ("torque", "speed", "set-point") for word in ("--messages", f"{one}={rate_hz}")]
+    assert run("sail", vessel, "test.toml", *messages, "-o", "bus.nc", "--no-progress").exit_code == 0
+    text = Path(vessel).read_text(encoding="utf-8")
+    Path("wrong.toml").write_text(text.replace("ratio = 5.04", "ratio = 4.03"), encoding="utf-8")
+    files = ("bus.nc", "--campaign", "test.toml", "--no-progress", "--vessel")
+    assert " ".join(run("inspect", *files, vessel).output.split()).startswith("Good enough")
+    words = " ".join(run("inspect", *files, "wrong.toml").output.split())
+    assert "Not as it is. The gear ratio is in doubt" in words or "Not as it is. The torque fits a propeller" in words
+    result = run("identify", *files, "wrong.toml", "-o", "found", "--no-report")
+    fitting = re.search(r"gearbox.ratio:? \(?4.03 is stated, (\S+) would fit", " ".join(result.output.split()))
+    assert float(fitting[1]) == pytest.approx(5.04, rel=1e-3 if by_orders else 0.05)
+    verdict = read_any_fingerprint(Path("found")).verdict
+    assert {"I_dn", "I_up", "K_Q", "K_p", "gain margin"}.isdisjoint(verdict.trusted)
+    assert {"tau_dn", "k_q"} <= {*verdict.trusted}

@@ -9,9 +9,10 @@ from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.design import expected_operation, limit_uses, limits_from_vessel, recorded_operation
-from shaftprint.design.operation._limit_use import limit_reasons, stated_limits
+from shaftprint.design.operation._limit_use import limit_cautions, limit_reasons, ratio_reasons, stated_limits
 from shaftprint.design.operation._operation import Operation
 from shaftprint.errors import DesignError
+from shaftprint.signals import WorkingPoint
 from shaftprint.tug import Tug, like_stan_tug_1205, normalised_truth
 from shaftprint.vessel import load_vessel
 
@@ -130,6 +131,42 @@ def test_an_engine_at_full_load_for_more_than_a_twentieth_of_a_leg_is_told(ship,
         assert reason.kind == "engine limit"
         assert f"M1 beyond full load for 14 s of {leg.stop_s - leg.start_s:.0f} s, with 5000 of " in reason.sentence
     assert limit_reasons(uses, ["M2"]) == ()
+
+
+@pytest.mark.parametrize(
+    ("load", "beyond_s", "shaft", "told"),
+    [
+        (0.605, 14.0, "engine", True),
+        (1.0, 14.0, "engine", False),
+        (0.605, 5.0, "engine", False),
+        (0.605, 14.0, "propeller", False),
+    ],
+)
+def test_less_torque_at_the_propeller_and_more_at_the_engine_are_a_ratio_that_is_too_small(
+    ship, load, beyond_s, shaft, told
+):
+    """(3.5 / 4.5)^2 is 0.605; 1500 N m are 1167 with the ratio that fits, and the tug's engine gives 1325."""
+    propeller = ship.propeller.model_copy(update={"torque_coefficient_std": 0.15 * ship.propeller.torque_coefficient})
+    speed = ship.sensors.speed[0].model_copy(update={"shaft": shaft})
+    vessel = ship.model_copy(
+        update={"sensors": ship.sensors.model_copy(update={"speed": (speed,)}), "propeller": propeller}
+    )
+    campaign = multisine(100.0, 0.1, periods=3)
+    (leg,) = campaign.legs
+    time = np.arange(0.0, campaign.duration_s, 0.1)
+    torque = np.where((time >= leg.start_s + 10.0) & (time < leg.start_s + 10.0 + beyond_s), 1500.0, 100.0)
+    rpm = np.full(time.size, 1300.0)
+    operation = Operation(campaign=campaign, time_s=time, set_point_rpm=rpm, speed_rpm=rpm, brake_torque_nm=torque)
+    uses = limit_uses(operation, stated_limits(vessel))
+    point = WorkingPoint(
+        engine_speed_rev_s=N_0 / 60.0, shaft_torque_nm=1725.0 * load, engine_speed_std_rev_s=0.0,
+        shaft_torque_std_nm=0.0, set_point_v=-5.0, load_std=0.0,
+    )  # fmt: skip
+    reasons = ratio_reasons(uses, ["M1"], point, vessel)
+    assert [one.kind for one in reasons] == ["gear ratio"] * told
+    # 3.82 times 4.5 / 3.5
+    assert all("gearbox.ratio (3.82 is stated, 4.91 would fit)" in one.sentence for one in reasons)
+    assert len(limit_cautions(uses, ["M1"])) == (beyond_s == 14.0)
 
 
 def test_what_is_not_stated_is_not_held_against_a_test(ship, truth):

@@ -1,5 +1,6 @@
 """What a test contradicts of the vessel file, against what was stated of it."""
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -107,6 +108,50 @@ def test_another_diameter_is_named_first_where_torque_and_inertia_are_as_stated(
 @pytest.mark.parametrize(("diameter_m", "load"), [(1.05, 1.3), (1.0, 1.0), (1.1, 1.0)])
 def test_a_fouled_propeller_and_a_diameter_within_its_reach_speak_against_nothing(diameter_m, load):
     assert _of_diameter(diameter_m, load=load) == ()
+
+
+@pytest.mark.parametrize(("inertia_std", "kind"), [(6.0, "gear ratio"), (0.7, "propeller")])
+def test_a_coefficient_that_is_off_beside_a_torque_as_stated_is_the_ratio_or_the_diameter(inertia_std, kind):
+    """A pick-up on the engine alone and 2.97 for 3.82: (2.97 / 3.82)^2 of K_Q and 2.97 / 3.82 of the inertia.
+
+    A guess of 15 % is one of torque and K_Q alike. An inertia that is known, and is as stated, leaves the diameter.
+    """
+    speed = TUG.sensors.speed[0].model_copy(update={"shaft": "engine"})
+    vessel = TUG.model_copy(
+        update={
+            "sensors": TUG.sensors.model_copy(update={"speed": (speed,)}),
+            "propeller": TUG.propeller.model_copy(
+                update={"torque_coefficient_std": 0.15 * TUG.propeller.torque_coefficient}
+            ),
+            "gearbox": TUG.gearbox.model_copy(update={"ratio": 2.97}),
+        }
+    )
+    rev_s, torque_nm = rev_s_from_rpm(TUG.working_point.engine_speed_rpm), TUG.working_point.shaft_torque_nm
+    point = WorkingPoint(
+        engine_speed_rev_s=rev_s, shaft_torque_nm=torque_nm, engine_speed_std_rev_s=0.0, shaft_torque_std_nm=0.0,
+        set_point_v=-5.0, load_std=0.0,
+    )  # fmt: skip
+    found = vessel.coefficient_of(torque_nm, rev_s)
+    coefficient, inertia = _numbers(1.0, vessel)
+    of_ratio = 2.97 / 3.82 if kind == "gear ratio" else 1.0
+    numbers = (
+        replace(coefficient, value=found, std=0.01 * found),
+        replace(inertia, value=of_ratio * 17.0, std=0.2, expected_std=inertia_std),
+    )
+    signals = SimpleNamespace(working_point=point, levels_rpm=(), legs=(), rate_hz=2000.0)
+    (reason,) = contradictions(numbers, signals, vessel, CAMPAIGN)
+    assert reason.kind == kind
+    # the file rounds K_Q
+    fitting = [float(one) for one in re.findall(r"gearbox.ratio \(2.97 is stated, (\S+) would fit\)", reason.sentence)]
+    assert fitting == ([pytest.approx(3.82, rel=0.01)] if kind == "gear ratio" else [])
+
+
+def test_a_torque_that_the_vessel_file_excludes_is_told_whatever_the_inertia_behind_the_gauge_is():
+    """0.55 of a torque that is known to 10 % at the least is six deviations off; an inertia of a card tells nothing."""
+    coefficient, inertia = _numbers(0.55, TUG)
+    (reason,) = _reasons_of((coefficient, replace(inertia, value=25.0, expected_std=12.0)), TUG, 0.55)
+    assert reason.kind == "gauge scale"
+    assert "0.55 times that" in reason.sentence
 
 
 def test_torque_and_inertia_that_are_off_alike_are_the_gauge():

@@ -76,6 +76,19 @@ def test_a_torque_coefficient_says_what_it_means_for_power(fingerprint):
 
 
 @pytest.mark.parametrize(
+    ("value", "state"),
+    [(0.05, "fine"), (0.043, "fine"), (0.058, "fine"), (0.0335, "look"), (0.0305, "look"), (0.066, "look")],
+)
+def test_a_torque_of_another_size_is_worth_a_look_whatever_a_guess_is_known_to(fingerprint, value, state):
+    """A series is known to 15 %: 0.0305 for 0.05 is 2.6 of that, and no weather and no fouling."""
+    found = with_physical(fingerprint, "K_Q", value=value, std=0.01 * value, expected=0.05, expected_std=0.0075)
+    card = answers(found)[PROPELLER]
+    assert card.state == state
+    asked = ("diameter", "pitch", "gear ratio", "scale of the torque", "this ship")
+    assert all(one in card.action for one in asked) == (state == "look")
+
+
+@pytest.mark.parametrize(
     ("zero", "std", "state"), [(0.3, 0.2, "fine"), (-5.0, 0.5, "look"), (1.0, 3.0, "open"), (-1.9, 0.5, "open")]
 )
 def test_the_zero_of_the_gauge(fingerprint, zero, std, state):

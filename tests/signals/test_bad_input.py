@@ -1,5 +1,6 @@
 """Recordings that cannot be right: one clear sentence, or a result with a finding."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from shaftprint.errors import SignalError
 from shaftprint.recording import Recording
 from shaftprint.signals import inspect_channels, prepare_signals
 from shaftprint.signals._contradictions import contradictions
-from shaftprint.signals._scale_reasons import torque_beside_file
+from shaftprint.signals._load_reasons import torque_beside_file
 
 
 def refused(recording, vessel, campaign, match, **more):
@@ -418,3 +419,19 @@ def test_a_table_that_asks_for_another_speed_is_a_finding(ship, vessel, campaign
     findings = [[line for line in one.findings if "asks for" in line] for one in told]
     assert findings[0] == []
     assert "asks for 1421 rpm at the working point, where the engine runs at 11" in findings[1][0]
+
+
+@pytest.mark.parametrize(("shift_rpm", "told"), [(-20.0, False), (-120.0, True), (90.0, True)])
+def test_a_table_that_is_some_per_cent_off_is_said_first_with_the_speeds_that_fit(
+    ship, vessel, campaign, shift_rpm, told
+):
+    """A droop is two per cent, and no governor's is ten; the line is -250.8 rpm a volt through -83.4 rpm."""
+    table = [[-10.0, 2424.6 + shift_rpm], [0.0, -83.4 + shift_rpm]]
+    wrong, recording = with_set_point(vessel, table_rpm=table), ship.recording()
+    signals = prepare_signals(recording, wrong, campaign)
+    reports = inspect_channels(recording, wrong)
+    said = contradictions(reports, wrong, signals=signals, campaign=campaign)
+    assert bool(said) == told == any("asks for" in one for one in signals.findings)
+    if told:
+        ends = [float(one) for one in re.findall(r"V for (-?\d+) rpm", said[0])]
+        assert ends == pytest.approx([2424.6, -83.4], abs=25.0)

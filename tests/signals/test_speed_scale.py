@@ -11,7 +11,8 @@ import pytest
 from shaftprint.campaign import load_campaign
 from shaftprint.signals import WorkingPoint
 from shaftprint.signals._contradictions import contradictions
-from shaftprint.signals._scale_reasons import scale_reasons, torque_beside_file
+from shaftprint.signals._load_reasons import torque_beside_file, torque_to_look_at
+from shaftprint.signals._scale_reasons import scale_reasons
 from shaftprint.signals.levels._speed_scale import ScaleEvidence
 from shaftprint.vessel import load_vessel
 
@@ -236,6 +237,27 @@ def test_a_propeller_of_another_diameter_is_named_with_the_one_that_fits():
 def test_a_torque_that_the_file_does_not_know_better_is_no_contradiction(diameter, share):
     """1.1^5 is 1.61, 3.2 of 15 %; and a day changes the load by more than 2 %."""
     assert torque_beside_file([point_at(1361.37)], card_of(diameter, share=share)) == ""
+
+
+@pytest.mark.parametrize(
+    ("diameter", "share", "told"),
+    [
+        (1.1, 0.15, True),
+        (1.06, 0.15, True),
+        (0.92, 0.15, True),
+        (1.03, 0.15, False),
+        (0.97, 0.15, False),
+        (8 / 7, 0.15, False),
+    ],
+)
+def test_a_torque_of_a_size_that_no_day_makes_is_worth_a_look_however_badly_it_is_known(diameter, share, told):
+    """1.06^5 is 1.34 and 1.03^5 is 1.16; of (8 / 7)^5, which is 1.95, more is said than that."""
+    found = torque_to_look_at([point_at(1361.37)], card_of(diameter, share=share, one=True))
+    assert bool(found) == told
+    if told:
+        # 500 N m for a volt fit the torque as found with 500 times what is expected over it
+        assert f"{500.0 * diameter**5:.4g} would fit" in found
+        assert f"gearbox.ratio (3.82 is stated, {3.82 * diameter**2.5:.3g} would fit)" in found
 
 
 def test_a_torque_that_is_off_at_one_level_alone_is_no_scale():

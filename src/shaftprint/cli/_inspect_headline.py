@@ -14,7 +14,8 @@ with late():
 
     from shaftprint.campaign._campaign import Campaign
     from shaftprint.identify.judgement._line_quality import good_lines
-    from shaftprint.signals._scale_reasons import propeller_reason
+    from shaftprint.reasons import Reason
+    from shaftprint.signals._load_reasons import points_of, propeller_reason, torque_to_look_at
     from shaftprint.signals._signals import Signals
     from shaftprint.spectra._spectra import Spectra
     from shaftprint.spelling import listed
@@ -68,11 +69,18 @@ def lost_parts(campaign: Campaign, signals: Signals, parts: Sequence[Spectra]) -
     return tuple(words)
 
 
-def of_propeller(signals: Signals, ship: Vessel) -> tuple[str, ...]:
-    """Return that the torque belongs to a propeller of another size: the recording is as good as it is."""
+def of_propeller(signals: Signals, ship: Vessel) -> tuple[Reason, ...]:
+    """Return that the torque belongs to a propeller of another size, or to another gear ratio."""
     point = signals.working_point
     reason = propeller_reason(ship.coefficient_of(point.shaft_torque_nm, point.engine_speed_rev_s), point, ship)
-    return () if reason is None else (reason.sentence,)
+    return () if reason is None else (reason,)
+
+
+def of_torque(signals: Signals, ship: Vessel) -> tuple[str, ...]:
+    """Return that the torque is not that of the vessel file's propeller: the recording is as good as it is."""
+    of_size = tuple(one.sentence for one in of_propeller(signals, ship))
+    sentence = torque_to_look_at(points_of(signals), ship)
+    return of_size or ((sentence,) if sentence else ())
 
 
 def lines_of(campaign: Campaign) -> int:

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.reasons import Reason
-from shaftprint.signals._scale_reasons import FAR, propeller_reason, scale_reasons, what_fits
+from shaftprint.signals._load_reasons import FAR, points_of, propeller_reason, torque_beside_file, what_fits
+from shaftprint.signals._scale_reasons import scale_reasons
 from shaftprint.signals.levels._gauge_zero import zero_between, zero_of_share, zero_reason
 from shaftprint.signals.levels._speed_scale import ScaleEvidence, load_over_expected
 from shaftprint.units import PERCENT
@@ -94,16 +95,26 @@ def _by_a_factor(
     off_by_one_factor = _scales(coefficient, inertia, signals, vessel, campaign)
     if off_by_one_factor:
         return off_by_one_factor
-    if coefficient is None or inertia is None or abs(coefficient.log) <= FAR * coefficient.std:
-        return ()
+    is_far = coefficient is not None and abs(coefficient.log) > FAR * coefficient.std
+    if coefficient is None or inertia is None:
+        return _torque_beside_file(signals, vessel)
     apart = abs(inertia.log - coefficient.log)
     within = ALIKE * math.hypot(inertia.std, coefficient.std)
-    if not (apart < abs(inertia.log) and apart < within):
+    if not is_far or not (apart < abs(inertia.log) and apart < within):
         confirmed_by = "I_dn" if apart > within and abs(inertia.log) < ALIKE * inertia.std else ""
+        # a ratio changes the inertia by the root of what it makes of the torque coefficient
+        of_ratio = abs(inertia.log - coefficient.log / 2.0)
         of_propeller = propeller_reason(
-            named["K_Q"].value, signals.working_point, vessel, std=coefficient.std, confirmed_by=confirmed_by
+            named["K_Q"].value,
+            signals.working_point,
+            vessel,
+            std=coefficient.std,
+            confirmed_by=confirmed_by,
+            is_ratio_known=abs(inertia.log) < ALIKE * inertia.std < of_ratio,
         )
-        return () if of_propeller is None else (of_propeller,)
+        if of_propeller is not None:
+            return (of_propeller,)
+        return () if confirmed_by else _torque_beside_file(signals, vessel)
     torque = load_over_expected(signals.working_point, vessel)
     return (
         Reason(
@@ -117,6 +128,15 @@ def _by_a_factor(
             ),
         ),
     )
+
+
+def _torque_beside_file(signals: "Signals", vessel: "Vessel") -> tuple[Reason, ...]:
+    """Return that the torque itself is far from that of the vessel file, whatever the inertia behind the gauge is."""
+    sentence = torque_beside_file(points_of(signals), vessel)
+    if not sentence:
+        return ()
+    channel = vessel.sensors.shaft_torque.channel
+    return (Reason(kind="gauge scale", where=channel, sentence=f"{sentence[:1].upper()}{sentence[1:]}"),)
 
 
 def _written(factor: float) -> str:

@@ -40,7 +40,8 @@ from shaftprint.identify.judgement._verdict import assess
 from shaftprint.identify.uncertainty._budget import Budget, budget
 from shaftprint.identify.uncertainty._profile import Interval, profile
 from shaftprint.models._combination import Combination
-from shaftprint.reasons import Note, Reason
+from shaftprint.reasons import Note, Reason, doubt_scales
+from shaftprint.signals._load_reasons import points_of, torque_to_look_at
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
@@ -66,6 +67,7 @@ def take_fingerprint(
     trial_conditions: "TrialConditions | None" = None,
     legs: Sequence[LegRecord] = (),
     reasons: Sequence[Reason] = (),
+    cautions: Sequence[str] = (),
     noise: Sequence[NoiseSpectrum] = (),
     torque_ripple: float | None = None,
     ship: Sequence[Estimate] = (),
@@ -93,6 +95,8 @@ def take_fingerprint(
         What orders and noise put on top of the shaft torque over the load, where it was measured.
     reasons
         What else speaks against the fit, such as legs that do not belong to one model.
+    cautions
+        What is no reason against its numbers, but close to one.
     ship
         What a test underway says of the ship, which is kept with the physical values.
     explained_share
@@ -128,6 +132,9 @@ def take_fingerprint(
     margin = margin_quantities(identification, profiled, stated)
     off = contradictions(physical, signals, vessel, campaign)
     judged = with_speed_age(profiled, stated)
+    # a reason says more of what a wrong scale makes of torque and engine
+    in_doubt = doubt_scales((*off, *reasons, *signals.reasons))
+    torque = torque_to_look_at(points_of(signals), vessel)
     verdict = assess(
         identification,
         profile=judged,
@@ -135,6 +142,7 @@ def take_fingerprint(
         reasons=(*off, *reasons),
         further=[*physical, *margin, conditions.engine_speed, conditions.shaft_torque],
         assumptions=assumptions_of(identification, vessel, margins, intervals),
+        cautions=() if in_doubt else (*([torque] if torque else []), *cautions),
         explained_share=explained_share,
     )
     return Fingerprint(

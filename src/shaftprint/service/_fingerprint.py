@@ -43,7 +43,7 @@ from shaftprint.service._ship_numbers import (
     physical_numbers_of,
     quantity_of,
 )
-from shaftprint.signals._scale_reasons import FAR
+from shaftprint.signals._load_reasons import FAR
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:

@@ -8,11 +8,12 @@ import numpy as np
 from shaftprint.digits import in_nm
 from shaftprint.reasons import Reason
 from shaftprint.signals._inspect import ChannelReport, PulseReport
-from shaftprint.signals._scale_reasons import scale_reasons, torque_beside_file
+from shaftprint.signals._load_reasons import points_of, torque_beside_file
+from shaftprint.signals._scale_reasons import scale_reasons
 from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.signals.kinds._compare import are_alike, engine_turns, swapped_pick_ups, what_would_agree
 from shaftprint.signals.levels._gauge_zero import zero_between, zero_reason
-from shaftprint.signals.levels._working_point import direction_words, expect_lever_as_stated
+from shaftprint.signals.levels._working_point import direction_words, expect_stated_lever, turned_lever
 
 if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
@@ -119,9 +120,11 @@ def _of_scales(
 ) -> tuple[str, ...]:
     """Return how speed and torque are off by one factor, by the test, or without one by the means of all channels."""
     beside = ""
+    asked: tuple[str, ...] = ()
     if signals is not None and campaign is not None:
-        if turned := expect_lever_as_stated(signals.working_point, signals.calibration, vessel):
+        if turned := turned_lever(signals.working_point, signals.calibration, vessel):
             return turned
+        asked = expect_stated_lever(signals.working_point, signals.calibration, vessel)
         reasons = scale_reasons(
             signals.working_point,
             vessel,
@@ -130,8 +133,8 @@ def _of_scales(
             legs={leg.name: leg.working_point for leg in signals.legs},
             rate_hz=signals.rate_hz,
         )
-        points = (signals.working_point, *(leg.working_point for leg in signals.legs))
-        beside = torque_beside_file(tuple(dict.fromkeys(points)), vessel)
+        points = points_of(signals)
+        beside = torque_beside_file(points, vessel)
         reasons = reasons or _of_zero(points, vessel)
     else:
         point = _mean_point(reports, vessel)
@@ -139,7 +142,7 @@ def _of_scales(
         rate_hz = rates_hz.get(vessel.sensors.speed[0].channel)
         reasons = () if point is None else scale_reasons(point, vessel, rate_hz=rate_hz)
     # a speed that is miscounted makes another torque of the same
-    return tuple(reason.sentence for reason in reasons) or ((beside,) if beside else ())
+    return tuple(reason.sentence for reason in reasons) or (*asked, *((beside,) if beside else ()))
 
 
 def _of_zero(points: Sequence[WorkingPoint], vessel: "Vessel") -> tuple[Reason, ...]:

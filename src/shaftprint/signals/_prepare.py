@@ -38,9 +38,8 @@ from shaftprint.signals.levels._dc_scale import DcScale, dc_scale, scale_of_sine
 from shaftprint.signals.levels._leg_state import leg_states
 from shaftprint.signals.levels._steady import steady_stretches
 from shaftprint.signals.levels._working_point import (
-    expect_asked_speed,
     expect_driving,
-    expect_lever_as_stated,
+    expect_stated_lever,
     expect_stated_slope,
     find_working_point,
     stretches_at_working_point,
@@ -171,8 +170,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
             *readings.findings,
             *mismatches,
             *stopped,
-            *expect_lever_as_stated(steady.working_point, steady.calibration, vessel),
-            *expect_asked_speed(steady.working_point, vessel),
+            *expect_stated_lever(steady.working_point, steady.calibration, vessel),
             *expect_stated_slope(steady.calibration, campaign),
             *differences,
             *asked,

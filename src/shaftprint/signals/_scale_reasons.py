@@ -5,7 +5,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import in_nm
-from shaftprint.reasons import OTHER_SHIP, Reason
+from shaftprint.reasons import Reason
+from shaftprint.signals._load_reasons import std_of_load
 from shaftprint.signals.kinds._compare import LARGEST_DIFFERENCE
 from shaftprint.signals.levels._speed_scale import (
     ScaleDoubt,
@@ -16,7 +17,6 @@ from shaftprint.signals.levels._speed_scale import (
     scale_doubt,
     scale_evidence,
 )
-from shaftprint.spelling import listed
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
@@ -27,21 +27,8 @@ if TYPE_CHECKING:
 
 # A factor is that of the gear within so much: the efficiency of the gear, and a load of another day.
 _LIKE_GEAR = 0.15
-# What is stated of the torque where the file states nothing, as of a propeller series, and the least that wind, current
-# and draught of a day change it by.
-_USUAL, _LEAST = 0.15, 0.1
-# The same with a pitch that is controlled.
-_OF_PITCH = 0.7
-# So many standard deviations are no chance.
-FAR = 3.5
 # A torque belongs to a speed within so many standard deviations of its load, and to no speed so many away.
 _AGREES, _FAR_OFF = 1.0, 3.0
-# Fouling, damage and the load of a day change the logarithm of a torque coefficient by no more.
-_MOST_OF_SHIP = math.log(1.4)
-# Torque at one speed goes with this power of the diameter.
-_OF_DIAMETER = 5.0
-# Logarithm of a factor of the torque beyond what a propeller that was replaced makes.
-_OF_ANOTHER_SHIP = math.log(2.0)
 
 
 def scale_reasons(
@@ -75,7 +62,7 @@ def scale_reasons(
     expected_rpm, load = vessel.working_point.engine_speed_rpm, load_over_expected(point, vessel)
     found_rpm = rpm_from_rev_s(point.engine_speed_rev_s)
     asked_rpm = expected_rpm if campaign is None else asked_speed(point, vessel, campaign)[0]
-    if _torque_agrees(load, doubt.factor, _std_of_load(point, vessel)):
+    if _torque_agrees(load, doubt.factor, std_of_load(point, vessel)):
         channel = vessel.sensors.set_point.channel
         return (
             Reason(
@@ -141,113 +128,6 @@ def _between_legs(
             ),
         )
     return ()
-
-
-def torque_beside_file(points: Sequence["WorkingPoint"], vessel: "Vessel") -> str:
-    """Return that the torque at every level is far from that of the vessel file, and what would fit; empty if not.
-
-    A torque that is known to 15 % contradicts nothing within that: what counts is how many standard deviations of all
-    that the file states lie between both. ``points``: mean speed and torque of each level, the working point first.
-    """
-    sensor = vessel.sensors.shaft_torque
-    loads = [load_over_expected(point, vessel) for point in points]
-    if not min(loads) > 0.0:
-        return ""
-    logs = [math.log(load) for load in loads]
-    std = [_std_of_load(point, vessel) for point in points]
-    away = min(abs(log) / one for log, one in zip(logs, std, strict=True))
-    # a scale makes all levels too large or all too small
-    if away <= FAR or min(logs) < 0.0 < max(logs):
-        return ""
-    point, load, turning = points[0], loads[0], vessel.working_point.turning
-    found_nm = turning * point.shaft_torque_nm
-    further = "".join(
-        f", {one:.2f} times at {rpm_from_rev_s(at.engine_speed_rev_s):.4g} rpm"
-        for at, one in zip(points[1:], loads[1:], strict=True)
-    )
-    return (
-        f"channel {sensor.channel}: expected a torque around {_rounded(found_nm / load)} N m at "
-        f"{rpm_from_rev_s(point.engine_speed_rev_s):.4g} rpm by working_point of the vessel file, found "
-        f"{_rounded(found_nm)} N m, {load:.2f} times that{further}, "
-        f"{away:.1f} standard deviations of what is stated; check {what_fits(load, vessel, std[0])}."
-    )
-
-
-def propeller_reason(
-    coefficient: float, point: "WorkingPoint", vessel: "Vessel", *, std: float | None = None, confirmed_by: str = ""
-) -> Reason | None:
-    """Return that the torque belongs to a propeller of another size; None where gauge, gear or ship may be the cause.
-
-    The torque coefficient is far from what is stated, by more than fouling, damage or the load of a day make of it, and
-    the torque itself is that of the working point, or something else confirms the scale of the gauge.
-
-    ``coefficient``: the torque coefficient that was found. ``point``: mean speed and torque. ``std``: standard
-    deviation of its logarithm over the stated one; by what is stated where it is None. ``confirmed_by``: what confirms
-    the scale of the gauge besides.
-    """
-    if vessel.is_underway or vessel.pitch is not None or not coefficient > 0.0:
-        return None
-    load, factor = load_over_expected(point, vessel), coefficient / vessel.torque_coefficient
-    is_far = abs(math.log(factor)) > max(_MOST_OF_SHIP, FAR * (_std_of_load(point, vessel) if std is None else std))
-    like_file = load > 0.0 and abs(math.log(load)) < min(abs(math.log(factor)) / 2.0, _MOST_OF_SHIP)
-    if not is_far or not (like_file or confirmed_by):
-        return None
-    agreeing = [*(["the torque"] if like_file else []), *([confirmed_by] if confirmed_by else [])]
-    diameter_m = vessel.propeller.diameter_m
-    shafts = {one.shaft for one in vessel.sensors.speed}
-    further = [*([] if len(shafts) > 1 else ["gearbox.ratio"]), *(["whether the ship took way"] if load < 0.8 else [])]
-    check = ["diameter_m", "pitch_ratio", "torque_coefficient of the propeller", *further]
-    return Reason(
-        kind="propeller",
-        where="K_Q",
-        sentence=(
-            f"The torque fits a propeller of {diameter_m * factor ** (1.0 / _OF_DIAMETER):.3g} m, and diameter_m is "
-            f"{diameter_m:g} m: K_Q is {coefficient:.4g} in place of {vessel.torque_coefficient:.4g}, while "
-            f"{listed(agreeing)} {'is' if len(agreeing) == 1 else 'are'} as the vessel file says; "
-            f"check {listed(check)}."
-        ),
-    )
-
-
-def _rounded(value: float) -> str:
-    """Return a number with four digits, without a power of ten."""
-    return f"{float(f'{value:.4g}'):g}"
-
-
-def _std_of_load(point: "WorkingPoint", vessel: "Vessel") -> float:
-    """Return the standard deviation of the torque that is expected, over it, with that of the gauge."""
-    sensor, stated = vessel.sensors.shaft_torque, vessel.torque_coefficient_std
-    load = max(_USUAL if stated is None else stated / vessel.torque_coefficient, _LEAST)
-    pitch = 0.0 if vessel.pitch is None else _OF_PITCH
-    return math.hypot(load, sensor.scale_std, sensor.zero_std / point.shaft_torque_nm, pitch)
-
-
-def what_fits(load: float, vessel: "Vessel", std: float = 0.0) -> str:
-    """Return what to check where the torque over the square of the speed is off by a factor, with values that fit.
-
-    ``load``: found over expected. ``std``: how well its logarithm is known; of a factor that the inertia behind the
-    gauge shares the gear is none, and nothing is said of it where this is 0.
-    """
-    sensor, gearbox, diameter_m = vessel.sensors.shaft_torque, vessel.gearbox, vessel.propeller.diameter_m
-    scale = sensor.scale_nm_per_unit
-    causes = [
-        f"the scale of {sensor.channel} ({scale:g} N m for one {sensor.unit} is stated, {scale / load:.4g} would fit)",
-        f"the propeller (diameter_m = {diameter_m:g} is stated, {diameter_m * load ** (1.0 / _OF_DIAMETER):.3g} would "
-        "fit, or another pitch)",
-    ]
-    log, of_gear = math.log(load), math.log(gearbox.ratio)
-    if abs(log + of_gear) < 2.0 * std:
-        causes.append(f"whether it is the torque of the engine's shaft, before the gear of {gearbox.ratio:g}")
-    elif abs(log - of_gear) < 2.0 * std:
-        causes.append(f"whether the gear of {gearbox.ratio:g} is in its scale a second time")
-    elif std and all(one.shaft == "engine" for one in vessel.sensors.speed):
-        # a pick-up on each shaft tells the ratio, and one on the propeller's alone needs none
-        causes.append(f"gearbox.ratio ({gearbox.ratio:g} is stated, {gearbox.ratio / load**0.5:.3g} would fit)")
-    if std and load < 1.0 and not vessel.is_underway:
-        causes.append("whether the ship took way")
-    if abs(log) > _OF_ANOTHER_SHIP:
-        causes.insert(0, OTHER_SHIP)
-    return listed(causes)
 
 
 def _told(beside: Mapping[str, float], ending: str) -> str:

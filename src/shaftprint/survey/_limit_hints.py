@@ -6,11 +6,18 @@ from typing import TYPE_CHECKING
 from shaftprint.digits import plain, plain_letters
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.late import late
+from shaftprint.reasons import doubt_scales
 from shaftprint.survey._measurement import Measurement
 from shaftprint.survey._trial import Trial
 
 with late():
-    from shaftprint.design.operation._limit_use import limit_reasons, limit_uses, stated_limits
+    from shaftprint.design.operation._limit_use import (
+        limit_cautions,
+        limit_reasons,
+        limit_uses,
+        ratio_reasons,
+        stated_limits,
+    )
     from shaftprint.design.operation._recorded import recorded_operation
     from shaftprint.limits._limit_hints import limit_hints
 
@@ -38,15 +45,23 @@ def hints_of(
     return (*_of_legs(uses), *of_sines)
 
 
-def reasons_of_limits(fit: "Identification", measurement: Measurement, trial: Trial) -> "tuple[Reason, ...]":
-    """Return that the engine was at a limit, where a fit does not explain its data.
+def reasons_of_limits(
+    fit: "Identification", measurement: Measurement, trial: Trial
+) -> "tuple[tuple[Reason, ...], tuple[str, ...]]":
+    """Return what an engine at a limit says against a fit, and what a reader must know of it all the same.
 
-    A limit that is stated too low speaks against no fit that does.
+    A limit speaks against a fit that does not explain its data. Of one that does the vessel file is in doubt, and with
+    it the numbers where both sides of the gears say that their ratio is wrong.
     """
-    if fit.p_value is None or fit.p_value >= Requirements().lowest_p_value:
-        return ()
+    if doubt_scales(measurement.signals.reasons):
+        # a wrong scale makes the torque of the engine, which is at no limit
+        return (), ()
     names = [*(one.name for one in trial.campaign.sines), *(leg.name for leg in measurement.legs)]
-    return limit_reasons(_uses(measurement, trial), names, failed=True)
+    uses, signals = _uses(measurement, trial), measurement.signals
+    ratio = ratio_reasons(uses, names, signals.working_point, trial.vessel)
+    if fit.p_value is None or fit.p_value >= Requirements().lowest_p_value:
+        return ratio, () if ratio else limit_cautions(uses, names)
+    return ratio or limit_reasons(uses, names, failed=True), ()
 
 
 def _uses(measurement: Measurement, trial: Trial) -> "tuple[LimitUse, ...]":

@@ -135,8 +135,7 @@ class Survey(Shown):
     def limit_hints(self) -> tuple[str, ...]:
         """Whether sines, steps or legs hint at a limit, in words."""
         limits = self.limit_fit
-        doubts = {} if limits is None else limits.doubts
-        named = [f"{kind.value}{', not trusted' * (kind in doubts)}" for kind in limits.kinds] if limits else []
+        named = [f"{kind.value}{', not trusted' * (kind in limits.doubts)}" for kind in limits.kinds] if limits else []
         return hints_of(self.measurement, self.trial, failed_steps(self.validations), named=named)
 
 
@@ -264,6 +263,7 @@ def _fingerprint(
     *,
     now: datetime | None,
     reasons: Sequence[Reason] = (),
+    cautions: Sequence[str] = (),
     explained_share: float = 0.0,
 ) -> Fingerprint:
     return take_fingerprint(
@@ -278,6 +278,7 @@ def _fingerprint(
         trial_conditions=trial.conditions,
         legs=fitted_legs(measurement.signals, measurement.legs, tests),
         reasons=reasons,
+        cautions=cautions,
         noise=_measured_noise(measurement, trial),
         torque_ripple=measurement.torque_ripple,
         ship=_ship(identification, measurement, trial),
@@ -327,8 +328,8 @@ def _of_fits(
 ) -> Survey:
     progress.begin("Finding the intervals")
     tests = leg_tests(fits[0], measurement.working_points)
-    knows = is_elastic(fits[0].structure)
-    twisted = () if knows else twist_reasons(measurement.speed_ratios, trial.vessel)
+    twisted = () if is_elastic(fits[0].structure) else twist_reasons(measurement.speed_ratios, trial.vessel)
+    at_limits, cautions = reasons_of_limits(fits[0], measurement, trial)
     fingerprint = _fingerprint(
         fits[0],
         measurement,
@@ -336,11 +337,12 @@ def _of_fits(
         tests,
         now=now,
         reasons=(
-            *reasons_of_limits(fits[0], measurement, trial),
+            *at_limits,
             *apart_reasons(fits[0], alone),
             *([] if offer is None else [offer.reason]),
             *twisted,
         ),
+        cautions=cautions,
         # a twist between two sensors is measured, and no other cause explains more
         explained_share=1.0 if twisted else 0.0 if offer is None else offer.share,
     )

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
 from shaftprint.cli._command_group import end_with_no
 from shaftprint.cli._found_tests import print_found_tests, write_proposal
-from shaftprint.cli._inspect_headline import headline, is_good_enough, lines_of, lost_parts, of_propeller
+from shaftprint.cli._inspect_headline import headline, is_good_enough, lines_of, lost_parts, of_torque
+from shaftprint.cli._inspected_test import InspectedTest, tested
 from shaftprint.cli._limit_uses import print_limit_uses
 from shaftprint.cli._next import VESSEL_FILE, free, print_next, vessel_file_near
 from shaftprint.cli._option_sections import SectionedCommand
@@ -20,18 +20,14 @@ from shaftprint.cli._terminal import answer, details, echo, is_detailed, print_f
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.cli.output._tables import print_table, print_tables
-from shaftprint.errors import ShaftprintError, SignalError
+from shaftprint.errors import SignalError
 from shaftprint.late import late
 from shaftprint.plain_table import Table, numbers, texts
-from shaftprint.reasons import Reason
+from shaftprint.reasons import doubt_scales
 
 with late():
-    from shaftprint.campaign._campaign import Campaign, load_campaign
+    from shaftprint.campaign._campaign import load_campaign
     from shaftprint.clocks._logger_clock import LoggerClock, logger_clocks
-    from shaftprint.design.operation._limit_use import LimitUse, limit_reasons, limit_uses, stated_limits
-    from shaftprint.design.operation._recorded import recorded_operation
-    from shaftprint.fingerprint._clock_influence import clock_findings, clock_influences
-    from shaftprint.limits._limit_hints import limit_hints
     from shaftprint.recording._level_watch import LevelWatch, watch_levels
     from shaftprint.recording._levels import Levels
     from shaftprint.recording._messages import judge_messages
@@ -40,11 +36,8 @@ with late():
     from shaftprint.signals._channel_readings import ChannelReadings, read_channels
     from shaftprint.signals._contradictions import contradictions
     from shaftprint.signals._inspect import ChannelReport, channel_reports
-    from shaftprint.signals._prepare import find_tests, prepare_signals
-    from shaftprint.signals._signals import Signals
-    from shaftprint.signals.excitation._found_test import FoundTest
-    from shaftprint.spectra._spectra import Spectra, estimate_spectra
-    from shaftprint.survey._legs import LegMeasurement, legs_of
+    from shaftprint.spectra._spectra import Spectra
+    from shaftprint.survey._legs import LegMeasurement
     from shaftprint.survey._proposed_sensors import Seen, proposed_sensors, uses_of
     from shaftprint.tables._legs import leg_table
     from shaftprint.tables._recording import clock_map_table
@@ -102,7 +95,7 @@ def command(
             # a comment of the vessel file into which the proposal is pasted
             print_next(*_first_step(recording, reading, seen), label="# Next:")
             return
-        test = None if planned is None else _tested(opened, ship, planned, readings, clocks, hidden=no_progress)
+        test = None if planned is None else tested(opened, ship, planned, readings, clocks, hidden=no_progress)
         reports = channel_reports(readings, levels)
         good = _print_answer(test, reports, ship, missing=readings.missing)
         _print_channels(opened, levels)
@@ -136,7 +129,7 @@ def _print_next(
     vessel: tuple[object, ...],
     campaign: str | None,
     output: Path | None,
-    test: _Test | None,
+    test: InspectedTest | None,
     *,
     good: bool,
 ) -> None:
@@ -152,79 +145,6 @@ def _print_next(
         print_next("identify", *files, "--campaign", campaign, "-o", free("result"))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Test:
-    """What a recording shows of its test."""
-
-    planned: Campaign
-    """What was asked of the ship."""
-    tests: tuple[FoundTest, ...]
-    """Where each test is in the recorded set point; empty where they are not to be found."""
-    signals: Signals | None
-    """The prepared signals; None where they are refused."""
-    spectra: Spectra | None
-    """The test lines; None where they are refused."""
-    legs: tuple[LegMeasurement, ...] = ()
-    """The legs; empty where there are none."""
-    uses: tuple[LimitUse, ...] = ()
-    """How far the test went to the limits of ship and engine."""
-    of_clocks: tuple[str, ...] = ()
-    """What is found of the clocks of merged loggers."""
-    hints: tuple[str, ...] = ()
-    """What hints at limits of governor and engine."""
-    refusal: ShaftprintError | None = None
-    """Why the test cannot be used, if it cannot."""
-
-    @property
-    def parts(self) -> tuple[Spectra, ...]:
-        """The spectra of the sines, or of every leg; empty where they are refused."""
-        if self.spectra is None:
-            return ()
-        return (*([self.spectra] if self.planned.sines else []), *(leg.spectra for leg in self.legs))
-
-    @property
-    def reasons(self) -> tuple[Reason, ...]:
-        """What speaks against its lines."""
-        names = [*(one.name for one in self.planned.sines), *(leg.name for leg in self.legs)]
-        of_lines = (reason for one in self.parts for reason in one.response.reasons)
-        return (*of_lines, *limit_reasons(self.uses, names))
-
-
-def _tested(
-    opened: Recording,
-    ship: Vessel,
-    asked: Campaign,
-    readings: ChannelReadings,
-    clocks: Sequence[LoggerClock],
-    *,
-    hidden: bool,
-) -> _Test:
-    """Return all that is found of a test, before anything is printed: the headline is made of it."""
-    tests: tuple[FoundTest, ...] = ()
-    with progress(hidden=hidden) as steps:
-        try:
-            steps.begin("Preparing the signals")
-            tests = find_tests(opened, ship, asked, readings=readings)
-            signals = prepare_signals(opened, ship, asked, readings=readings)
-            steps.begin("Measuring the test lines")
-            legs = legs_of(signals, asked)
-            spectra = estimate_spectra(signals, asked) if asked.sines else legs[0].spectra
-            operation = recorded_operation(signals, asked, ship)
-            return _Test(
-                planned=asked,
-                tests=tests,
-                signals=signals,
-                spectra=spectra,
-                legs=legs,
-                uses=limit_uses(operation, stated_limits(ship)),
-                of_clocks=clock_findings(clock_influences(clocks, spectra=spectra, signals=signals)),
-                hints=limit_hints(spectra.harmonics) if asked.sines else (),
-            )
-        except ShaftprintError as error:
-            # told below the tables too, which show what the campaign should be
-            return _Test(planned=asked, tests=tests, signals=None, spectra=None, refusal=error)
-
-
 def _print_proposal(opened: Recording, seen: Sequence[Seen], clocks: Sequence[LoggerClock]) -> None:
     print_tables([clock_map_table(clocks)])
     print_findings("Left out", [f"{name}: {reason}" for name, reason in opened.left_out.items()])
@@ -234,18 +154,21 @@ def _print_proposal(opened: Recording, seen: Sequence[Seen], clocks: Sequence[Lo
 
 
 def _print_answer(
-    test: _Test | None, reports: Sequence[ChannelReport], ship: Vessel, *, missing: Sequence[str] = ()
+    test: InspectedTest | None, reports: Sequence[ChannelReport], ship: Vessel, *, missing: Sequence[str] = ()
 ) -> bool:
     """Print whether the recording is good enough, and what is wrong with its sensors; return whether it is."""
     signals, asked = (None, None) if test is None else (test.signals, test.planned)
     is_good = False
     wrong = contradictions(reports, ship, signals=signals, campaign=asked)
-    against = () if test is None else dict.fromkeys(reason.sentence for reason in test.reasons)
+    reasons = () if test is None else test.reasons
+    against = dict.fromkeys(reason.sentence for reason in reasons)
+    # what is said of a scale is no size of the propeller besides
+    in_doubt = bool(wrong) or doubt_scales(reasons)
     held = [report.held for report in reports if report.held is not None and report.held not in against]
     problems = [
         *missing,
         *wrong,
-        *(() if signals is None or wrong else of_propeller(signals, ship)),
+        *(() if signals is None or in_doubt else of_torque(signals, ship)),
         *against,
         *held,
         *(report.problem for report in reports if report.problem is not None),
@@ -374,7 +297,7 @@ def _print_lines(spectra: Spectra, legs: Sequence[LegMeasurement]) -> None:
             print_lines(leg.spectra)
 
 
-def _print_test(test: _Test, recording: Path) -> None:
+def _print_test(test: InspectedTest, recording: Path) -> None:
     if test.tests:
         print_found_tests(test.tests, test.planned, recording)
     if test.signals is None or test.spectra is None:

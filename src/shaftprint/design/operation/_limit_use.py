@@ -14,8 +14,11 @@ from shaftprint.design.operation._operation import Operation
 from shaftprint.digits import plain, plain_letters
 from shaftprint.notebook._shown import Shown
 from shaftprint.reasons import Reason
+from shaftprint.signals._load_reasons import ratio_that_fits, std_of_load
+from shaftprint.signals.levels._speed_scale import load_over_expected
 
 if TYPE_CHECKING:
+    from shaftprint.signals._working_points import WorkingPoint
     from shaftprint.vessel._vessel import Vessel
 
 # A barred range may be crossed, but not for longer [s].
@@ -26,6 +29,9 @@ _OF_ENGINE = ("full load", "full rack", "motoring torque", "zero fuel")
 # An engine at a limit for more than this share of an excitation bends its lines by more than their noise: 3 % of five
 # minutes moved a gain by one standard deviation. Where a fit has failed a quarter of it is the first thing to look at.
 _BENDS, _MAY_BEND = 0.04, 0.01
+# A load this many standard deviations below that of the vessel file, with an engine beyond its full load, is that of
+# another ratio; with the one that fits the engine stays below this multiple of its full load.
+_OFF, _HIGHEST = 2.0, 1.1
 # A torque is at its limit where less than this share of it is left.
 REACHED = 0.02
 
@@ -136,6 +142,47 @@ def limit_reasons(uses: Sequence[LimitUse], excitations: Sequence[str], *, faile
         "if the engine may give that."
     )
     return (Reason(kind="engine limit", sentence=sentence),) if where else ()
+
+
+def limit_cautions(uses: Sequence[LimitUse], excitations: Sequence[str]) -> tuple[str, ...]:
+    """Return that a test that a linear line explains went, by the vessel file, where none does; as `limit_reasons`."""
+    where = _where(uses, excitations, _BENDS)
+    sentence = (
+        f"By the vessel file the engine was at a limit: {where}. The model explains the data all the same: correct "
+        "limits, upstream inertia, gear ratio or the scale of the torque there if the engine cannot give that."
+    )
+    return (sentence,) if where else ()
+
+
+def ratio_reasons(
+    uses: Sequence[LimitUse], excitations: Sequence[str], point: "WorkingPoint", vessel: "Vessel"
+) -> tuple[Reason, ...]:
+    """Return that the gear ratio is too small, where both sides of it say so and no sensor shows it.
+
+    With a ratio that is too small the engine gives more than its full load, and the propeller takes less than it
+    should; a gauge or another propeller does one of both.
+
+    ``uses``: from `limit_uses`, of a recording. ``excitations``: names of those that are used. ``point``: mean speed
+    and torque. ``vessel``: says which torque belongs to which speed.
+    """
+    load = load_over_expected(point, vessel)
+    if not load > 0.0 or math.log(load) > -_OFF * std_of_load(point, vessel):
+        return ()
+    beyond = [use for use in uses if use.limit == "full load" and use.value * load**0.5 < _HIGHEST * use.allowed]
+    where, ratio = _where(beyond, excitations, _BENDS), ratio_that_fits(load, vessel)
+    if not where or not ratio or vessel.is_underway:
+        return ()
+    return (
+        Reason(
+            kind="gear ratio",
+            where="gearbox.ratio",
+            sentence=(
+                f"The gear ratio is in doubt: over the square of the speed the propeller takes {load:.2f} times the "
+                f"torque of working_point, and the engine would all the same be at a limit: {where}; check {ratio}, or "
+                "propeller, scale of the torque and full-load curve of the vessel file."
+            ),
+        ),
+    )
 
 
 def limit_warnings(uses: Sequence[LimitUse], excitations: Sequence[str]) -> tuple[str, ...]:

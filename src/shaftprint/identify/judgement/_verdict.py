@@ -139,6 +139,7 @@ def assess(
     reasons: Sequence[Reason] = (),
     further: Sequence[Estimate] = (),
     assumptions: Sequence[str] = (),
+    cautions: Sequence[str] = (),
     explained_share: float = 0.0,
 ) -> Verdict:
     """Return which numbers of a fit may be used, and why the others may not.
@@ -160,6 +161,8 @@ def assess(
         Numbers that were made of the parameters, such as physical values, to be judged with them.
     assumptions
         What the numbers rest on and no recording can show.
+    cautions
+        What else is no reason against its numbers, but close to one.
     explained_share
         Share of the misfit beyond the noise that another structure, which a reason names, takes away; of what may be
         missing only what would take away more is named then.
@@ -189,14 +192,15 @@ def assess(
     not_trusted = {name: doubt for name, doubt in doubts.items() if doubt}
     # a speed that may be used says nothing of governor, inertia or load
     usable = not of_fit and any(not doubts[one.name] and basis_of(one) - OF_WORKING_POINT for one in numbers)
-    cautions = cautions_of(evidence, {one.name: one for one in numbers}, not_trusted) if usable else ()
+    of_numbers = cautions_of(evidence, {one.name: one for one in numbers}, not_trusted) if usable else ()
+    every_caution = (*cautions, *of_numbers)
     headline = _headline(evidence, every, trusted=trusted, not_trusted=not_trusted, usable=usable)
     sentences = (
         headline,
         # the headline has said the first
         *(reason.sentence for reason in every if reason.sentence not in headline),
         *(() if of_fit else trusted_in_words(trusted, not_trusted)),
-        *cautions,
+        *every_caution,
         *(f"Assumed: {assumption}" for assumption in assumptions),
     )
     return Verdict(
@@ -207,7 +211,7 @@ def assess(
         not_trusted=not_trusted,
         loop=evidence.loop,
         suspects=suspects,
-        cautions=cautions,
+        cautions=every_caution,
         reasons=every,
         assumptions=tuple(assumptions),
     )

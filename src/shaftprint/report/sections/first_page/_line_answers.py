@@ -8,6 +8,7 @@ from shaftprint.fingerprint._vessel_fields import INERTIA
 from shaftprint.report.sections._cover import Card, State
 from shaftprint.report.sections.first_page._doubts import FAR, TOO_FAR, doubt_of, is_off
 from shaftprint.report.sections.first_page._number_table import shown
+from shaftprint.signals._load_reasons import LARGEST_BY_DAY
 from shaftprint.tables._fingerprint import expected_text, value_text
 from shaftprint.units import PERCENT
 
@@ -111,19 +112,44 @@ def propeller(fingerprint: "Fingerprint") -> list[Card]:
     doubt = doubt_of(fingerprint, "K_Q")
     if doubt or not quantity.std < float("inf"):
         return [Card(question=question, state="open", sentence=f"{doubt} {words}".strip(), action=NOT_TOLD)]
-    if not is_off(quantity):
+    if is_off(quantity):
+        return [
+            Card(
+                question=question,
+                state="look",
+                sentence=f"{words} The propeller, its inflow or the torque gauge has changed.",
+                action=(
+                    "Inspect the propeller, and check zero and scale of the torque gauge. If another propeller is "
+                    "fitted, correct the vessel file."
+                ),
+            )
+        ]
+    if not _is_another_size(quantity, fingerprint):
         return [Card(question=question, state="fine", sentence=words)]
     return [
         Card(
             question=question,
             state="look",
-            sentence=f"{words} The propeller, its inflow or the torque gauge has changed.",
+            sentence=f"{words} The vessel file knows it too badly to say what is wrong, and no day of one propeller "
+            "makes so much of it.",
             action=(
-                "Inspect the propeller, and check zero and scale of the torque gauge. If another propeller is fitted, "
-                "correct the vessel file."
+                "Check diameter and pitch of the propeller, the gear ratio and the scale of the torque in the vessel "
+                "file, and whether the recording is of this ship."
             ),
         )
     ]
+
+
+def _is_another_size(coefficient: "Estimate", fingerprint: "Fingerprint") -> bool:
+    """Return whether a torque is as far from a guess of the vessel file as weather and fouling never make it."""
+    if (
+        not coefficient.expected
+        or coefficient.value <= 0.0
+        or any(one.startswith("pitch.") for one in fingerprint.vessel_fields)
+    ):
+        return False
+    away = abs(math.log(coefficient.value / coefficient.expected))
+    return away - FAR * coefficient.std / coefficient.value > math.log(LARGEST_BY_DAY)
 
 
 def _power_for_speed(quantity: "Estimate") -> str:
