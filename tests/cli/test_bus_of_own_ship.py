@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
+import shaftprint as sp
 from shaftprint.campaign import load_campaign
-from shaftprint.fingerprint._json_file import read_any_fingerprint
 from shaftprint.forecast import ShipBeforeTest, predict_test
 from shaftprint.vessel import load_vessel
 
@@ -148,6 +148,6 @@ def test_a_gear_ratio_that_no_sensor_shows_is_not_trusted_where_the_torque_contr
     result = run("identify", *files, "wrong.toml", "-o", "found", "--no-report")
     fitting = re.search(r"gearbox.ratio:? \(?4.03 is stated, (\S+) would fit", " ".join(result.output.split()))
     assert float(fitting[1]) == pytest.approx(5.04, rel=1e-3 if by_orders else 0.05)
-    verdict = read_any_fingerprint(Path("found")).verdict
+    verdict = sp.read("found").verdict
     assert {"I_dn", "I_up", "K_Q", "K_p", "gain margin"}.isdisjoint(verdict.trusted)
     assert {"tau_dn", "k_q"} <= {*verdict.trusted}

@@ -45,7 +45,7 @@ def _reasons_of(numbers, vessel, factor=1.0):
         set_point_v=-5.7,
         load_std=0.0,
     )
-    signals = SimpleNamespace(working_point=point, levels_rpm=(), legs=(), rate_hz=2000.0)
+    signals = SimpleNamespace(working_point=point, levels_rpm=(), legs=(), read_hz=2000.0)
     return contradictions(numbers, signals, vessel, CAMPAIGN)
 
 
@@ -91,7 +91,7 @@ def _of_diameter(diameter_m, *, load=1.0, inertia=1.0):
         replace(behind, value=inertia * behind.value, expected_std=1.0),
     )
     return contradictions(
-        numbers, SimpleNamespace(working_point=point, levels_rpm=(), legs=(), rate_hz=2000.0), vessel, CAMPAIGN
+        numbers, SimpleNamespace(working_point=point, levels_rpm=(), legs=(), read_hz=2000.0), vessel, CAMPAIGN
     )
 
 
@@ -138,7 +138,7 @@ def test_a_coefficient_that_is_off_beside_a_torque_as_stated_is_the_ratio_or_the
         replace(coefficient, value=found, std=0.01 * found),
         replace(inertia, value=of_ratio * 17.0, std=0.2, expected_std=inertia_std),
     )
-    signals = SimpleNamespace(working_point=point, levels_rpm=(), legs=(), rate_hz=2000.0)
+    signals = SimpleNamespace(working_point=point, levels_rpm=(), legs=(), read_hz=2000.0)
     (reason,) = contradictions(numbers, signals, vessel, CAMPAIGN)
     assert reason.kind == kind
     # the file rounds K_Q

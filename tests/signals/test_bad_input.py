@@ -327,22 +327,31 @@ def test_unknown_mode(ship, vessel, campaign):
 
 
 @pytest.mark.parametrize(
-    ("fields", "factor", "unit"),
+    ("recorded", "stated", "factor", "far", "scale"),
     [
-        ({"unit": "N m", "scale_nm_per_unit": 1.0}, 0.5, "kN m would fit, with scale_nm_per_unit = 1000 in"),
-        ({"unit": "kN m", "scale_nm_per_unit": 1000.0}, 500.0, "N m would fit, for which the recording and"),
+        *(("N m", unit, 0.5, "small: values in kN m that are called N m", 1000.0) for unit in ("N m", "kN m")),
+        # half of it, as of another day: nothing else makes a thousand
+        ("N m", "kN m", 0.25, "small: values in kN m that are called N m", 1000.0),
+        *(("kN m", unit, 500.0, "large: values in N m that are called kN m", 0.001) for unit in ("N m", "kN m")),
     ],
 )
-def test_the_unit_of_a_torque_is_named_where_another_fits(spoiled, vessel, campaign, fields, factor, unit):
+def test_the_unit_of_a_torque_is_named_where_another_fits(
+    spoiled, vessel, campaign, recorded, stated, factor, far, scale
+):
     # the ship shows 500 N m a volt
-    recording = spoiled(M_s=lambda counts: factor * counts.astype(np.float64), units={"M_s": fields["unit"]})
+    recording = spoiled(M_s=lambda counts: factor * counts.astype(np.float64), units={"M_s": recorded})
     refused(
         recording,
-        with_gauge(vessel, **fields),
+        with_gauge(vessel, unit=stated, scale_nm_per_unit={"N m": 1.0, "kN m": 1000.0}[stated]),
         campaign,
         rf"channel M_s: expected a torque around 1725 N m by working_point of the vessel file, found .* N m with the "
-        rf"unit .*; {unit} sensors\.shaft_torque.*; check whether the vessel file is of this ship too",
+        rf"unit .* of the vessel file; that is about 1000 times too {far}.*; check whether the vessel file is of this "
+        "ship too",
     )
+    # what it says mends it
+    mended = with_gauge(vessel, unit="N m", scale_nm_per_unit=scale)
+    found = prepare_signals(recording, mended, campaign).working_point.shaft_torque_nm
+    assert found == pytest.approx(1725.0 * factor / (0.5 if factor < 1.0 else 500.0), rel=0.1)
 
 
 def test_a_torque_of_another_ship_is_not_called_another_unit(spoiled, vessel, campaign):

@@ -2,7 +2,8 @@
 
 import pytest
 
-from shaftprint.signals import inspect_channels
+from shaftprint.errors import SignalError
+from shaftprint.signals import inspect_channels, prepare_signals
 from shaftprint.signals._contradictions import contradictions
 
 PICK_UPS = {"PTM_e": "n_e", "PTM_1": "n_e1", "PTM_4": "n_e4"}
@@ -51,6 +52,43 @@ def test_torque_and_set_point(swapped):
     # 500 N m a volt; the set point is around -5 V
     found = float(sentence.partition("a mean of ")[2].partition(" N m")[0])
     assert -2750.0 < found < -2000.0
+
+
+@pytest.mark.parametrize("other", ["M_s", "U_setpoint"])
+def test_a_pick_up_whose_pulses_stand_in_another_channel(ship, spoiled, vessel, campaign, other):
+    """So far it was a rate too low for pulses that are noise."""
+    recording = spoiled(
+        **{
+            name: (lambda counts, old=old: ship.counts[old].copy())
+            for name, old in (("PTM_e", other), (other, "PTM_e"))
+        }
+    )
+    use = {"M_s": "shaft torque", "U_setpoint": "set point"}[other]
+    said = f"channels PTM_e and {other} seem to be swapped: expected pulses in PTM_e, found them in {other}, .* {use}"
+    with pytest.raises(SignalError, match=said):
+        prepare_signals(recording, vessel, campaign)
+    reports = {one.channel: one.problem for one in inspect_channels(recording, vessel)}
+    assert f"channels PTM_e and {other} seem to be swapped" in reports["PTM_e"]
+
+
+def test_a_set_point_that_stands_in_the_channel_of_the_torque(ship, spoiled, vessel, campaign):
+    """Both positive, as a lever in mA is: no sign tells."""
+    recording = spoiled(M_s=lambda counts: -ship.counts["U_setpoint"], U_setpoint=lambda counts: -ship.counts["M_s"])
+    with pytest.raises(SignalError, match="channels U_setpoint and M_s seem to be swapped: expected the set point of"):
+        prepare_signals(recording, vessel, campaign)
+
+
+def test_units_that_stand_in_each_others_channels_are_a_swap_and_a_channel_that_is_taken_is_no_advice(
+    ship, spoiled, vessel, campaign
+):
+    """PTM_e and others are in V too: what another sensor has is never advised."""
+    gauge = vessel.sensors.shaft_torque.model_copy(update={"unit": "kN m", "scale_nm_per_unit": 1000.0})
+    in_knm = vessel.model_copy(update={"sensors": vessel.sensors.model_copy(update={"shaft_torque": gauge})})
+    swapped = spoiled(units={"M_s": "V", "U_setpoint": "kN m"})
+    with pytest.raises(SignalError, match=r"U_setpoint has it, and is to be in V: the two seem to be swapped"):
+        prepare_signals(swapped, in_knm, campaign)
+    with pytest.raises(SignalError, match=r'found "mA"; correct the unit in the vessel file, and the scale'):
+        prepare_signals(spoiled(units={"U_setpoint": "mA"}), vessel, campaign)
 
 
 def test_a_gauge_mounted_the_other_way_round(spoiled, vessel):

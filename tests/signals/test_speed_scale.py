@@ -78,6 +78,14 @@ def test_a_rate_that_is_half_the_loggers_is_no_count(vessel):
     assert "--sample-rate" not in reason.sentence
 
 
+def test_a_value_in_rpm_is_off_by_its_scale_and_by_no_rate():
+    """A factor of 0.25 for 0.125 in the file of a bus; the logger's rate is twice that of the messages by chance."""
+    vessel = one_pick_up(unit="rpm", pulses_per_revolution=1)
+    (reason,) = reasons_of(vessel, "12min", 1361.37, of_speed=2.0, rate_hz=4000.0)
+    assert "--sample-rate" not in reason.sentence
+    assert "the scale of PTM_e (0.5 times it would fit, as with another factor in the file" in reason.sentence
+
+
 def test_a_pick_up_of_the_other_shaft_is_named():
     (reason,) = reasons_of(one_pick_up(), "12min", 1361.37, of_speed=1.0 / RATIO)
     assert 'the gear ratio of 3.82: write shaft = "propeller" for PTM_e' in reason.sentence
@@ -216,7 +224,7 @@ def test_a_propeller_of_another_diameter_is_named_with_the_one_that_fits():
         working_point=legs[0].working_point,
         levels_rpm=(1361.37, 900.0),
         legs=legs,
-        rate_hz=2000.0,
+        read_hz=2000.0,
         calibration=SimpleNamespace(slope_rev_s_per_v=-4.18),
     )
     (told,) = contradictions((), card_of(8 / 7), signals=signals, campaign=CAMPAIGNS["12min"])

@@ -162,7 +162,7 @@ def _scales(
         legs={leg.name: leg.working_point for leg in signals.legs},
         of_fit=of_fit,
         beside={name: math.exp(factor.log) for name, factor in factors.items() if factor is not None},
-        rate_hz=signals.rate_hz,
+        rate_hz=signals.read_hz,
     )
 
 

@@ -13,6 +13,7 @@ from shaftprint.signals._held_samples import HeldSamples, held_samples
 from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.conditioning._runs import RunTally
 from shaftprint.signals.kinds._kinds import find_sources
+from shaftprint.signals.kinds._swaps import swapped_pulses
 
 if TYPE_CHECKING:
     from shaftprint.recording._channel import Channel
@@ -74,6 +75,7 @@ def read_channels(
                 problems[name] = error
     finally:
         pool.shutdown(cancel_futures=True)
+    problems |= swapped_pulses(sources, problems, clock)
     # edges of pulses are gone, the speed is there
     give_back_memory()
     kept = {name: held_samples(tally.runs(), stated_s=stated_s[name] or 0.0) for name, tally in tallies.items()}

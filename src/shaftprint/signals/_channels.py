@@ -14,6 +14,7 @@ from shaftprint.units import unit_factor
 if TYPE_CHECKING:
     from shaftprint.recording._channel import Channel
     from shaftprint.recording._recording import Recording
+    from shaftprint.vessel._sensors import Sensors
 
 Counts: TypeAlias = NDArray[np.int16] | NDArray[np.float64]
 Advance: TypeAlias = Callable[[int], None]
@@ -43,14 +44,15 @@ def find_channel(
     use: str,
     way_out: str = "correct the name there",
     takes_messages: bool = False,
+    sensors: "Sensors | None" = None,
 ) -> "Channel":
     """Return a channel that holds samples in the expected unit, into which one of the same quantity is converted.
 
     ``recording``: where to look. ``name``: name of the channel, from the vessel file. ``unit``: unit that the vessel
     file gives for it; spaces and multiplication dots do not count. ``use``: what the channel is needed for, in words.
     ``way_out``: what to do where the channel is missing, in words. ``takes_messages``: whether messages at times of
-    their own will do. Raises SignalError if the channel is missing, empty, in another unit, or on no clock where it has
-    to be.
+    their own will do. ``sensors``: all of the vessel file, whose channels are taken. Raises SignalError if the channel
+    is missing, empty, in another unit, or on no clock where it has to be.
     """
     if name not in recording.channels:
         raise MissingChannel(
@@ -66,11 +68,9 @@ def find_channel(
     if (factor := _factor(channel.unit, unit)) is not None:
         channel = replace(channel, unit=unit, scale=factor * channel.scale, offset=factor * channel.offset)
     if _plain(channel.unit) != _plain(unit):
-        has_it = [one for one, other in recording.channels.items() if _plain(other.unit) == _plain(unit)]
-        other = f"{has_it[0]} has it: take that one, or " if len(has_it) == 1 else ""
         raise SignalError(
             f'{recording.path}, channel {name}: expected the unit "{unit}" for the {use}, '
-            f'found "{channel.unit}"; {other}correct the unit and scale in the vessel file.'
+            f'found "{channel.unit}"; {_way_to_unit(recording, channel, unit, sensors)}.'
         )
     if channel.count == 0:
         raise SignalError(f"{recording.path}, channel {name}: expected samples, found none.")
@@ -163,6 +163,21 @@ def _factor(given: str, wanted: str) -> float | None:
     if _plain(given) == _plain(wanted) or wanted in _NO_QUANTITY:
         return None
     return unit_factor(given, wanted)
+
+
+def _way_to_unit(recording: "Recording", channel: "Channel", unit: str, sensors: "Sensors | None") -> str:
+    """Return what to do where a channel has another unit: a channel of a sensor is taken, or swapped with this one."""
+    taken = {} if sensors is None else {one: of for one, of in sensors.channels if one != channel.name}
+    has_it = [one for one, other in recording.channels.items() if _plain(other.unit) == _plain(unit)]
+    swapped = [one for one in has_it if one in taken and _plain(taken[one]) == _plain(channel.unit)]
+    if len(swapped) == 1:
+        return (
+            f"{swapped[0]} has it, and is to be in {channel.unit}: the two seem to be swapped; correct the channels in "
+            "the vessel file or the columns of the recording"
+        )
+    free = [one for one in has_it if one not in taken]
+    other = f"{free[0]} has it: take that one, or " if len(free) == 1 else ""
+    return f"{other}correct the unit in the vessel file, and the scale that goes with it"
 
 
 def _unit_to_say(channel: "Channel", unit: str) -> str:

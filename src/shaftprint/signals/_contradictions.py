@@ -131,7 +131,7 @@ def _of_scales(
             campaign,
             levels_rpm=signals.levels_rpm,
             legs={leg.name: leg.working_point for leg in signals.legs},
-            rate_hz=signals.rate_hz,
+            rate_hz=signals.read_hz,
         )
         points = points_of(signals)
         beside = torque_beside_file(points, vessel)

@@ -25,12 +25,13 @@ from shaftprint.signals._signals import SetPointCalibration, Signals
 from shaftprint.signals._working_points import LegState
 from shaftprint.signals.excitation._found_test import FoundTest
 from shaftprint.signals.excitation._found_tests import found_tests
-from shaftprint.signals.excitation._match import expect_campaign, left_out
+from shaftprint.signals.excitation._match import expect_campaign, expect_no_swap, left_out
 from shaftprint.signals.excitation._message_lines import joined_about_lines
 from shaftprint.signals.excitation._quantum import take_out_steps
 from shaftprint.signals.excitation._steps import find_step_delays
 from shaftprint.signals.kinds._compare import compare_speeds
 from shaftprint.signals.kinds._kind import Source, SteadyState
+from shaftprint.signals.kinds._pick_up import Speed
 from shaftprint.signals.kinds._set_point import SetPointMessages, read_set_point
 from shaftprint.signals.kinds._torque import expect_moving_torque, expect_one_sign
 from shaftprint.signals.levels._calibrate import calibrate, calibrate_through_wander
@@ -160,6 +161,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
         strips=tuple(pick_up.strips for pick_up in readings.pick_ups if pick_up.strips is not None),
         step_delays=delays,
         legs=states,
+        read_hz=next(source.channel.rate_hz for source in readings.sources if isinstance(source.kind, Speed)),
         set_point_delay=late,
         orders=tracked_orders(vessel, {one.name: one for one in signals.values() if isinstance(one, SpeedSignal)}),
         repairs=readings.repairs,
@@ -213,7 +215,14 @@ def find_tests(
         values, clock = readings.by_name["n_set"].values, readings.clock
         return found_tests(values, campaign.of_input(), rate_hz=clock.rate_hz, start_s=clock.start_s)
     sensor = vessel.sensors.set_point
-    channel = find_channel(recording, sensor.channel, unit=sensor.unit, use="set point", takes_messages=True)
+    channel = find_channel(
+        recording,
+        sensor.channel,
+        unit=sensor.unit,
+        use="set point",
+        takes_messages=True,
+        sensors=vessel.sensors,
+    )
     rate_hz = min(_SET_POINT_HZ, channel.rate_hz)
     clock = clock_of(channel, rate_hz)
     volts = read_set_point(channel, sensor, clock, speed_rpm=vessel.working_point.engine_speed_rpm).values
@@ -235,6 +244,7 @@ def _differences_from_campaign(
     sensors, coverage = vessel.sensors, readings.coverage
     grid = {"rate_hz": readings.clock.rate_hz, "start_s": readings.clock.start_s}
     lost = left_out(campaign, coverage, name=str(recording.path))
+    expect_no_swap(readings.set_point, readings.torque_nm, campaign.of_input(), sensors, **grid)
     mismatches = expect_campaign(
         readings.set_point, campaign.of_input(), **grid, channel=sensors.set_point.channel, coverage=coverage
     )

@@ -142,7 +142,9 @@ def what_to_check(factor: float, vessel: "Vessel", rate_hz: float | None = None)
 
     ``rate_hz``: samples a second at which the recording was read: pulses come as often as samples are said to.
     """
-    stated_hz = None if vessel.logger is None else vessel.logger.sample_rate_hz
+    logger, is_counted = vessel.logger, vessel.sensors.speed[0].gives_pulses
+    # a value in rpm is the same at any rate
+    stated_hz = logger.sample_rate_hz if logger is not None and is_counted else None
     if stated_hz is not None and rate_hz is not None and abs(rate_hz / stated_hz / factor - 1.0) < _LIKE_GEAR / 2.0:
         return (
             f"the recording was read at {rate_hz:g} Hz, and sample_rate_hz of the logger is {stated_hz:g} Hz in the "
@@ -176,7 +178,10 @@ def _counted(factor: float, sensor: "SpeedSensor") -> str:
     if sensor.gives_angle:
         return f"counts_per_revolution or the unit of {sensor.channel}"
     if not sensor.gives_pulses and sensor.unit != "Hz":
-        return f"unit, scale and shaft of {sensor.channel}"
+        return (
+            f"the scale of {sensor.channel} ({1.0 / factor:.3g} times it would fit, as with another factor in the file "
+            "that describes a bus), its unit and its shaft"
+        )
     stated = sensor.pulses_per_revolution
     fitting = stated * factor
     if fitting > 0.75 and abs(round(fitting) / fitting - 1.0) < _LIKE_GEAR / 2.0:

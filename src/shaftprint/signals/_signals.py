@@ -172,6 +172,8 @@ class Signals(Shown, Labelled):
     """What was repaired, in order of time."""
     legs: tuple[LegState, ...] = ()
     """Working point of each leg that the recording holds, in order of time."""
+    read_hz: float | None = None
+    """Samples a second at which the first speed was read [Hz]; None where that is not known."""
     set_point_delay: SetPointDelay | None = None
     """How late the demand is behind the set point, where it was logged beside it."""
     orders: tuple[TrackedOrder, ...] = ()

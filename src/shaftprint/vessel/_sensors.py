@@ -358,13 +358,17 @@ class Sensors(Settings):
     local_ids: tuple[ChannelName, ...] = ()
     """What channels are called by ISO 19848, where a data server on board has them."""
 
+    @property
+    def channels(self) -> tuple[tuple[str, str], ...]:
+        """Channel and unit of every sensor, the speeds first."""
+        further = (self.rack, self.demand, self.ship_speed, self.pitch_set_point, self.pitch, self.machine_torque)
+        every = (*self.speed, self.shaft_torque, self.set_point, *(one for one in further if one is not None))
+        return tuple((one.channel, one.unit) for one in every)
+
     @model_validator(mode="after")
     def _names_and_channels_differ(self) -> Self:
         names = [sensor.name for sensor in self.speed]
-        channels = [sensor.channel for sensor in self.speed]
-        channels += [self.shaft_torque.channel, self.set_point.channel]
-        further = (self.rack, self.demand, self.ship_speed, self.pitch_set_point, self.pitch, self.machine_torque)
-        channels += [sensor.channel for sensor in further if sensor is not None]
+        channels = [channel for channel, _ in self.channels]
         errors = []
         for what, values in (("name", names), ("channel", channels)):
             twice = names_twice(values)

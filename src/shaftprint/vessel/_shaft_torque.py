@@ -19,6 +19,14 @@ from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_
 # A gauge whose channel is in kN m has a scale of about 1000 N m a unit; this much less is a forgotten factor.
 _SMALLEST_OF_KILO = 100.0
 _PASCAL_PER_GPA = 1e9
+# Of a torque that is a thousand times too small or large, within such a factor of what is expected, the unit is wrong.
+_NEAR_THOUSAND = 3.0
+_THOUSAND = {
+    1000.0: "that is about 1000 times too small: values in kN m that are called N m? State them as kN m in the "
+    'recording or what describes it, or unit = "N m" with scale_nm_per_unit = 1000 in sensors.shaft_torque',
+    0.001: "that is about 1000 times too large: values in N m that are called kN m? State them as N m in the recording "
+    'or what describes it, or unit = "N m" with scale_nm_per_unit = 0.001 in sensors.shaft_torque',
+}
 # What a channel can show in a unit: a current loop that is alive, what amplifiers of 10 V give, and a
 # share that is no voltage, since one with ten times the scale would look like it.
 _REACH = {"mA": ALIVE_MA, "V": (-10.5, 10.5), "%": (10.5, 110.0)}
@@ -192,6 +200,10 @@ class ShaftTorqueSensor(Settings):
         ``torque_nm``: the torque that was found [N m], as the gauge counts it. ``expected_nm``: the one that was
         expected [N m], below 0 of a shaft that turns astern.
         """
+        if self.unit in NM_PER_UNIT:
+            for factor, words in _THOUSAND.items():
+                if 1.0 / _NEAR_THOUSAND < factor * torque_nm / expected_nm < _NEAR_THOUSAND:
+                    return words
         reading = (torque_nm + self.zero_nm) / self.scale_nm_per_unit + self.live_zero
         full_nm = self.full_scale_nm
         for unit, scale, zero in (

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from shaftprint.signals.excitation._steps import step_window
 from shaftprint.signals.levels._leg_periods import leg_periods
 from shaftprint.units import PERCENT
 
+if TYPE_CHECKING:
+    from shaftprint.vessel._sensors import Sensors
+
 # Slow excitations only: a second of clock error must not look like another campaign.
 _SLOW_HZ = 0.2
 # Less of the movement that the campaign asks for is another test, or a channel behind a divider that nobody stated.
@@ -29,6 +33,8 @@ _LOOKS_PER_S = 10.0
 _LEVEL, _MOVES = 0.2, 2.5
 _POWERS_OF_TEN = (1e-6, 1e-3, 1e-2, 1e-1, 10.0, 100.0, 1e3, 1e6)
 _OPPOSITE_DEG = 150.0
+# What explains less of a set point is no set point: a torque lags, and has noise.
+_ITSELF = 0.99
 # Clocks that are looked for, as a share of the time, and how alike the courses must then be.
 _WIDEST_CLOCK, _CLOCK_STEP, _SAME_COURSE = 0.02, 2.5e-4, 0.95
 
@@ -70,6 +76,38 @@ def left_out(campaign: Campaign, coverage: Coverage, *, name: str) -> tuple[str,
     span = f"the recording lasts from {coverage.start_s:.1f} to {coverage.stop_s:.1f} s"
     names = ", ".join(window[0] for window in sorted(outside, key=lambda window: window[1]))
     return (f"{span}, the campaign to {end_s:.1f} s; left out for that: {names}", *findings)
+
+
+def expect_no_swap(
+    set_point_v: FloatArray,
+    torque_nm: FloatArray,
+    campaign: Campaign,
+    sensors: "Sensors",
+    *,
+    rate_hz: float,
+    start_s: float,
+) -> None:
+    """Refuse a set point that stands in the channel of the torque.
+
+    A torque follows a set point too, with noise and inertia: of the set point itself nothing is left unexplained.
+    Raises SignalError.
+    """
+    stop_s = start_s + set_point_v.size / rate_hz
+    inside = [item for item in campaign.excitations if item.start_s >= start_s and item.stop_s <= stop_s]
+    slow = [item for item in inside if not _is_fast(item)] or inside
+
+    def least(values: FloatArray) -> float:
+        return min((_explained(values, item, campaign, rate_hz, start_s) for item in slow), default=0.0)
+
+    found = max(least(torque_nm), least(-torque_nm))
+    if found < _ITSELF or found < least(set_point_v):
+        return
+    own, other = sensors.set_point.channel, sensors.shaft_torque.channel
+    raise SignalError(
+        f"channels {own} and {other} seem to be swapped: expected the set point of the campaign "
+        f'"{campaign.name}" in {own}, found it in {other}. Correct the channels in the vessel file or the columns of '
+        "the recording."
+    )
 
 
 def _periods_lost(campaign: Campaign, coverage: Coverage) -> tuple[tuple[str, float, float], ...]:

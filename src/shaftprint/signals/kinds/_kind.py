@@ -135,6 +135,7 @@ class ChannelKind(ABC, Generic[SensorT]):
             use=self.use,
             way_out=way_out,
             takes_messages=self.takes_messages,
+            sensors=vessel.sensors,
         )
         return (Source(kind=self, name=self.name, channel=channel, sensor=sensor, vessel=vessel),)
 

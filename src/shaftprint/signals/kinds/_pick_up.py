@@ -72,6 +72,7 @@ class Speed(ChannelKind[SpeedSensor]):
                     unit=sensor.unit,
                     use=f"{self.use} {sensor.name}",
                     takes_messages=not sensor.gives_pulses,
+                    sensors=vessel.sensors,
                 ),
                 sensor=sensor,
                 vessel=vessel,

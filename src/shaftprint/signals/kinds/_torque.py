@@ -114,7 +114,7 @@ def expect_unit(channel: "Channel", vessel: "Vessel") -> None:
     if fitting is not None and torque / expected > 0.0 and not _SMALL_PART < torque / expected < _MULTIPLE:
         raise SignalError(
             f"channel {channel.name}: expected a torque around {in_nm(expected)} by working_point of the vessel file, "
-            f"found {in_nm(torque)} with the unit {sensor.unit} that the recording states; {fitting}; check "
+            f"found {in_nm(torque)} with the unit {sensor.unit} of the vessel file; {fitting}; check "
             f"{OTHER_SHIP} too."
         )
     # half of the samples saturated would leave gaps in place of a torque
