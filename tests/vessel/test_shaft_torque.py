@@ -93,8 +93,8 @@ def test_a_gauge_in_milliampere_or_millivolt_by_other_names():
 @pytest.mark.parametrize(
     ("stated", "fields", "reading", "unit"),
     [
-        ("N m", {}, 1.7, "kN m would fit, with scale_nm_per_unit = 1000 in"),
-        ("kN m", {}, 1700.0, "N m would fit, for which the recording and"),
+        ("N m", {}, 1.7, "that is about 1000 times too small: values in kN m that are called N m?"),
+        ("kN m", {}, 1700.0, "that is about 1000 times too large: values in N m that are called kN m?"),
         ("V", {"scale_nm_per_unit": 500.0}, 1700.0, "N m would fit, with scale_nm_per_unit = 1 in"),
         (
             "V",

@@ -201,9 +201,10 @@ class ShaftTorqueSensor(Settings):
         expected [N m], below 0 of a shaft that turns astern.
         """
         if self.unit in NM_PER_UNIT:
-            for factor, words in _THOUSAND.items():
-                if 1.0 / _NEAR_THOUSAND < factor * torque_nm / expected_nm < _NEAR_THOUSAND:
-                    return words
+            shares = {words: factor * torque_nm / expected_nm for factor, words in _THOUSAND.items()}
+            return next(
+                (words for words, share in shares.items() if 1.0 / _NEAR_THOUSAND < share < _NEAR_THOUSAND), None
+            )
         reading = (torque_nm + self.zero_nm) / self.scale_nm_per_unit + self.live_zero
         full_nm = self.full_scale_nm
         for unit, scale, zero in (
@@ -218,12 +219,8 @@ class ShaftTorqueSensor(Settings):
             shown_nm = scale * (reading - zero)
             if unit == self.unit or not lowest <= reading <= highest:
                 continue
-            if self.unit in NM_PER_UNIT and unit not in NM_PER_UNIT:
-                continue
             if not 1.0 / _NEAR < shown_nm / expected_nm < _NEAR:
                 continue
-            if self.unit == "kN m":
-                return f"{unit} would fit, for which the recording and sensors.shaft_torque have to state it"
             start = f" and reading_at_zero = {zero:g}" if zero else ""
             return f"{unit} would fit, with scale_nm_per_unit = {scale:.5g}{start} in sensors.shaft_torque"
         return None
