@@ -103,6 +103,13 @@ def test_an_output_that_comes_late_is_named_with_its_time(drive):
     assert "state latency_s = 0.04 and latency_std_s = 0.008 for n in the drive file" in sentence
 
 
+def test_a_latency_beyond_the_first_range_of_the_search_has_its_own_time(drive):
+    """Of 60 samples: 40 are looked through first, and their end is no time."""
+    sentence = first_reason(identified(drive(), late_n=60))
+    assert abs(float(sentence.split()[2]) - 0.6) < 2e-4
+    assert "s late against the inputs" in sentence
+
+
 def test_an_input_that_is_logged_late_is_told_from_outputs_that_are(drive):
     sentence = first_reason(identified(drive(), late_u=3))
     assert sentence.startswith("Against the outputs u comes 0.0299")

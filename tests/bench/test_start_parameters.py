@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.bench import equipped, identify_drive
-from shaftprint.bench._fit import drive_time_settings
+from shaftprint.bench._time_settings import drive_time_settings
 from shaftprint.drive import load_drive
 from shaftprint.errors import SettingsError
 from shaftprint.simulation import equilibrium, simulate

@@ -10,8 +10,8 @@ from scipy.signal import lfilter
 from tests.bench.test_search_drive import ROTOR
 
 from shaftprint.bench import equipped
-from shaftprint.bench._fit import drive_time_settings
 from shaftprint.bench._record_reasons import REQUIREMENTS
+from shaftprint.bench._time_settings import drive_time_settings
 from shaftprint.drive import load_drive
 from shaftprint.identify import Settings, assess
 from shaftprint.time_domain import identify_in_time, record_from_arrays

@@ -64,6 +64,7 @@ def test_what_a_file_says(written):
         ('unit = "V"\n', "", r"inputs\[1\].unit \(u\): expected a value, found none; add the key."),
         ("value = 0.8", 'value = "0.8"', r"known\[1\].value \(R\): expected a number, found '0.8'."),
         ("std = 0.01", "std = -1.0", r"known\[1\].std \(R\): expected a number not less than 0, found -1.0."),
+        ('channel = "speed"', 'channel = "voltage"', "every signal its own channel, found voltage for u and omega"),
         ('name = "omega"', 'name = "u"', "inputs and outputs to have its own name, found u twice"),
         (
             "std = 0.01",

@@ -1,21 +1,20 @@
 """The verb of the room: a drive's records to parameters and a verdict."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
-from shaftprint.bench._assumed_yielding import assumed_yielding
 from shaftprint.bench._equipped import EquippedDrive
-from shaftprint.bench._former_states import start_by_names_of_today
 from shaftprint.bench._hold import input_way
 from shaftprint.bench._late_outputs import late_outputs
 from shaftprint.bench._per_record import free_parameters, idle_labels, own_priors
 from shaftprint.bench._record_reasons import REQUIREMENTS, held_outputs, large_offsets, starts_in_motion
 from shaftprint.bench._search import AGREE, search_drive
-from shaftprint.errors import IdentificationError, SettingsError, StructureError
+from shaftprint.bench._time_settings import drive_time_settings
+from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._verdict import Verdict, assess
 from shaftprint.identify.likelihood._prior import Prior
@@ -23,26 +22,17 @@ from shaftprint.identify.search._settings import Settings
 from shaftprint.identify.search._starts import Draw, GivenStarts, LatinHypercube
 from shaftprint.identify.uncertainty._profile import Interval, profile
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._structure import Structure
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.reasons import Reason
-from shaftprint.simulation._equilibrium import equilibrium, state_names
-from shaftprint.simulation._simulate import Trace
-from shaftprint.spelling import meant
-from shaftprint.time_domain._identify_in_time import TimeSettings
 from shaftprint.time_domain._record import Record
-from shaftprint.time_domain._simulator import ExactDelays, Simulator
 
 STARTS = 4
 """Starts of the search: a start in time costs a simulation of all records at each step."""
-STEPS_A_SAMPLE = 4
-"""Steps of the simulation from one sample to the next: an input goes straight between them."""
 # Bounds further apart than this are searched by magnitude.
 WIDE = 100.0
 # By magnitude from a lower bound of zero: from this share of the upper bound on.
 SMALLEST = 1e-5
-DEGREES = {"none": -1, "constant": 0, "drift": 1}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -109,11 +99,11 @@ def identify_drive(
     known = own_priors(one, records, {**one.priors, **(priors or {})})
     settings = drive_settings(free_parameters(one, records), known, starts)
     time = drive_time_settings(one, records)
-    searched = search_drive(one, records, settings, time, rng=rng)
+    searched = search_drive(one, records, settings, rng=rng)
     way = input_way(one, searched.fit, records, settings=settings, time=time)
     if way.hold != records[0].hold:
         turned = [replace(record, hold=way.hold) for record in records]
-        searched = search_drive(one, turned, settings, time, rng=rng)
+        searched = search_drive(one, turned, settings, rng=rng)
     fit, agreeing = searched.fit, searched.agreeing
     profiled = profile(fit)
     remarks = [remark for record in records for remark in record.remarks]
@@ -189,70 +179,3 @@ class ByMagnitude(Draw):
         low, high = np.where(wide, np.log(least), lower), np.where(wide, np.log(np.where(wide, upper, 1.0)), upper)
         drawn = LatinHypercube().starts(low, high, count, rng)
         return np.where(wide, np.exp(np.where(wide, drawn, 0.0)), drawn)
-
-
-def drive_time_settings(one: EquippedDrive, records: Sequence[Record]) -> TimeSettings:
-    """Return how the records of a drive are compared with its structure.
-
-    Raises SettingsError if the start is known of a state that the equations do not have.
-    """
-    fit = one.drive.fit
-    step_s = fit.longest_step_s or 1.0 / (STEPS_A_SAMPLE * max(record.rate_hz for record in records))
-    known = None
-    if fit.start == "known":
-        names = state_names(one.structure, one.structure.vector({}))
-        known = start_by_names_of_today(one.drive, names)
-        _expect_states(one, known, names)
-    return TimeSettings(
-        drift_degree=DEGREES[fit.offset],
-        initial_states=fit.start == "found",
-        simulator=FromStart(inner=ExactDelays(longest_step_s=step_s), known=known),
-        assumed=assumed_yielding(one),
-    )
-
-
-def _expect_states(one: EquippedDrive, known: Mapping[str, float], names: Sequence[str]) -> None:
-    for name in known:
-        if name not in names:
-            raise SettingsError(
-                f"drive {one.drive.name}, start: expected a state of {one.structure.name}, one of {', '.join(names)}, "
-                f"found {name}.{meant(name, names)}"
-            )
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class FromStart(Simulator):
-    """A simulation from known states; where none are known and nothing runs steadily, from rest."""
-
-    inner: ExactDelays
-    """How it is simulated."""
-    known: Mapping[str, float] | None = field(default=None)
-    """States at the start by name, the others zero; None for steady running."""
-
-    def __call__(
-        self,
-        structure: Structure,
-        values: FloatArray,
-        record: Record,
-        wanted: Sequence[str],
-        *,
-        initial: FloatArray | None = None,
-        of_states: bool = False,
-    ) -> Trace:
-        """Return the outputs at every sample of the drive, and their derivatives."""
-        states = initial
-        if states is None and self.known is not None:
-            states = self.rest(structure, values, record)
-        return self.inner(structure, values, record, wanted, initial=states, of_states=of_states)
-
-    def rest(self, structure: Structure, values: FloatArray, record: Record) -> FloatArray:
-        """Return the states at the first sample of the drive, shape (states,)."""
-        names = state_names(structure, values)
-        if self.known is not None:
-            return np.array([self.known.get(name, 0.0) for name in names])
-        inputs = {name: float(record.drive[name][0]) for name in structure.inputs}
-        try:
-            return equilibrium(structure, values, inputs).states
-        except StructureError:
-            # what integrates freely has no steady running: its states are found from rest on
-            return np.zeros(len(names))

@@ -28,8 +28,12 @@ from shaftprint.spelling import listed
 from shaftprint.time_domain._identify_in_time import TimeSettings, identify_in_time
 from shaftprint.time_domain._record import Record
 
-# The longest latency that is looked for, in samples, and between which lags.
-_LONGEST, _SHORTEST_LAG, _LONGEST_LAG = 40, 0.2, 400.0
+# The longest latencies that are looked for, in samples, each where one of the shorter range stands at its end.
+_LONGEST, _AT_END = (40, 200, 1000), 0.98
+# So many times as many samples a record has at least.
+_OF_RECORD = 4
+# Lags that are looked for, in samples.
+_SHORTEST_LAG, _LONGEST_LAG = 0.2, 400.0
 # Less of a sample is whether inputs hold.
 _MORE_THAN_HOLD = 0.6
 # So small a part of the misfit is left by what explains it.
@@ -71,10 +75,7 @@ def late_outputs(
     ways = (True, False) if any(map(jump_within_a_sample, records)) else (records[0].hold,)
     for hold in ways:
         found: dict[float, tuple[Reason, ...]] = {}
-        for guess in _guesses(one, [replace(record, hold=hold) for record in records]):
-            beside = _beside(one, guess, settings, time)
-            if beside is None:
-                continue
+        for guess, beside in _tried(one, [replace(record, hold=hold) for record in records], settings, time):
             reasons = guess.told(_by_output(beside, guess))
             if reasons:
                 found.setdefault(_misfit(beside), reasons)
@@ -86,21 +87,45 @@ def late_outputs(
     return ()
 
 
-def _guesses(one: EquippedDrive, records: Sequence[Record]) -> Iterator[_Guess]:
-    """Yield latencies of all outputs, a lag of each, and lags of all where there are several."""
+def _tried(
+    one: EquippedDrive, records: Sequence[Record], settings: Settings, time: TimeSettings
+) -> Iterator[tuple[_Guess, Identification]]:
+    """Yield latencies of all outputs, a lag of each, and lags of all where there are several, with their fits."""
     names = [output.name for output in one.drive.outputs]
     sample_s = _sample_s(records)
-    late_s = _LONGEST * sample_s
-    yield _Guess(
-        sensors={name: latency_of(name, 0.0, 2.0 * late_s, late_s) for name in names},
+    begin_s: Mapping[str, float] = {}
+    for samples in _LONGEST:
+        late_s = samples * sample_s
+        guess = _late(one, records, late_s, begin_s)
+        beside = _beside(one, guess, settings, time) if _OF_RECORD * samples < _shortest(records) else None
+        if beside is None:
+            break
+        begin_s = {name: found.value for name, found in _by_output(beside, guess).items()}
+        if all(abs(value) < _AT_END * late_s for value in begin_s.values()):
+            yield guess, beside
+            break
+    lags = {name: lag_of(name, _SHORTEST_LAG * sample_s, _LONGEST_LAG * sample_s, sample_s) for name in names}
+    singles = [{name: lag} for name, lag in lags.items()] if len(names) > 1 else []
+    for sensors in (*singles, lags):
+        guess = _Guess(sensors=sensors, records=records, told=_told_smooth)
+        beside = _beside(one, guess, settings, time)
+        if beside is not None:
+            yield guess, beside
+
+
+def _late(one: EquippedDrive, records: Sequence[Record], late_s: float, begin_s: Mapping[str, float]) -> _Guess:
+    """Return latencies of all outputs, to either side no longer than stated, looked for from where they begin."""
+    names = [output.name for output in one.drive.outputs]
+    return _Guess(
+        sensors={name: latency_of(name, 0.0, 2.0 * late_s, late_s + begin_s.get(name, 0.0)) for name in names},
         records=[_later(record, round(late_s * record.rate_hz)) for record in records],
         told=partial(_told_late, one),
         moved_s=late_s,
     )
-    lags = {name: lag_of(name, _SHORTEST_LAG * sample_s, _LONGEST_LAG * sample_s, sample_s) for name in names}
-    singles = [{name: lag} for name, lag in lags.items()] if len(names) > 1 else []
-    for sensors in (*singles, lags):
-        yield _Guess(sensors=sensors, records=records, told=_told_smooth)
+
+
+def _shortest(records: Sequence[Record]) -> int:
+    return min(record.used.size for record in records)
 
 
 def _beside(one: EquippedDrive, guess: _Guess, settings: Settings, time: TimeSettings) -> Identification | None:

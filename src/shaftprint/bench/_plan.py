@@ -16,11 +16,11 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.bench._equipped import EquippedDrive
-from shaftprint.bench._fit import drive_time_settings
 from shaftprint.bench._multisine import Lines
 from shaftprint.bench._per_record import free_parameters, with_structures
 from shaftprint.bench._predict import PredictedRecords, largest_noise, noise_words, predict_drive, predicted_at
 from shaftprint.bench._records import FEWEST
+from shaftprint.bench._time_settings import drive_time_settings
 from shaftprint.design.inputs._wish import Wish
 from shaftprint.drive._signals import Signal
 from shaftprint.errors import DesignError

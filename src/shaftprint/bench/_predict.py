@@ -11,9 +11,9 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.bench._equipped import EquippedDrive
-from shaftprint.bench._fit import drive_time_settings
 from shaftprint.bench._per_record import all_parameters, base_name, free_parameters, own_priors, with_structures
 from shaftprint.bench._records import read_records
+from shaftprint.bench._time_settings import drive_time_settings
 from shaftprint.errors import IdentificationError
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, DriveRecord
 from shaftprint.identify.likelihood._prior import Prior

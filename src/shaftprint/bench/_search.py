@@ -19,8 +19,10 @@ import numpy as np
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._per_record import free_parameters, own_names, with_structures
-from shaftprint.bench._turned_outputs import expect_no_turned_output
+from shaftprint.bench._read_as_meant import expect_as_meant
+from shaftprint.bench._time_settings import drive_time_settings
 from shaftprint.catalogue._drives import DRIVES
+from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._identification import Cluster, Identification
 from shaftprint.identify.fit._identify import Optima, searched_optima
 from shaftprint.identify.fit._optima import optima_of
@@ -97,23 +99,29 @@ def search_drive(
     one: EquippedDrive,
     records: Sequence[Record],
     settings: Settings,
-    time: TimeSettings,
     *,
     rng: np.random.Generator,
     further: Sequence[FloatArray] = (),
 ) -> Searched:
     """Return the fit of a drive's structure to its records, from as many starts as it takes.
 
-    ``settings``: how to search, with the number of starts that are drawn at first. ``time``: how the records are
-    compared with the structure. ``rng``: source of the start values. ``further``: free parameters to start from too,
-    such as the optimum of a structure that this one holds. Raises IdentificationError if there are too few data, no
-    start reached a model that stays within bounds, or an output counts the other way round.
+    ``settings``: how to search, with the number of starts that are drawn at first. ``rng``: source of the start values.
+    ``further``: free parameters to start from too, such as the optimum of a structure that this one holds. Raises
+    IdentificationError if there are too few data, no start reached a model that stays within bounds, an output counts
+    the other way round, or a channel or the times are meant in a thousandth of their unit or in thousands of it.
     """
+    time = drive_time_settings(one, records)
     white = _White(one, records, settings, time, rng)
-    ends = white.ends(settings.starts)
-    expect_no_turned_output(
-        one, records, white.left_by(ends), lambda turned: _left(one, turned, settings, time, copy.deepcopy(rng))
-    )
+
+    def left_of(others: Sequence[Record]) -> float:
+        return _left(one, others, settings, copy.deepcopy(rng))
+
+    try:
+        ends = white.ends(settings.starts)
+    except IdentificationError:
+        expect_as_meant(one, records, np.inf, left_of)
+        raise
+    expect_as_meant(one, records, white.left_by(ends), left_of)
     ends = ends.beside(white.made(further))
     ends = ends.beside(white.made(white.frictionless(ends)))
     ends = ends.beside(white.made(white.mirrored(ends)))
@@ -126,12 +134,13 @@ def search_drive(
     return searched
 
 
-def _left(
-    one: EquippedDrive, records: Sequence[Record], settings: Settings, time: TimeSettings, rng: np.random.Generator
-) -> float:
-    """Return the share of the outputs that the first starts leave unexplained."""
-    white = _White(one, records, settings, time, rng)
-    return white.left_by(white.ends(settings.starts))
+def _left(one: EquippedDrive, records: Sequence[Record], settings: Settings, rng: np.random.Generator) -> float:
+    """Return the share of the outputs that the first starts leave unexplained; infinite where none stays in bounds."""
+    try:
+        white = _White(one, records, settings, drive_time_settings(one, records), rng)
+        return white.left_by(white.ends(settings.starts))
+    except IdentificationError:
+        return np.inf
 
 
 class _White:

@@ -16,10 +16,11 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
-from shaftprint.bench._fit import STARTS, drive_settings, drive_time_settings
+from shaftprint.bench._fit import STARTS, drive_settings
 from shaftprint.bench._hold import noise_left
 from shaftprint.bench._per_record import all_parameters, free_parameters, own_priors, with_structures
 from shaftprint.bench._search import search_drive
+from shaftprint.bench._time_settings import drive_time_settings
 from shaftprint.distributions import chi_square_tail
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.comparison._compare import expect_comparable
@@ -130,7 +131,7 @@ def _own(
 ) -> Identification:
     settings = drive_settings(free_parameters(one, records), own_priors(one, records, one.priors), starts)
     held = _held_in(all_parameters(one, records), smaller)
-    return search_drive(one, records, settings, drive_time_settings(one, records), rng=rng, further=held).fit
+    return search_drive(one, records, settings, rng=rng, further=held).fit
 
 
 def _held_in(large: Sequence[Parameter], smaller: Sequence[Identification]) -> list[FloatArray]:

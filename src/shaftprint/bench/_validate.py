@@ -9,8 +9,8 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fingerprint import identified_drive
-from shaftprint.bench._fit import drive_time_settings
 from shaftprint.bench._per_record import base_name, record_structure
+from shaftprint.bench._time_settings import drive_time_settings
 from shaftprint.errors import IdentificationError
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
 from shaftprint.identify.judgement._requirements import Requirements

@@ -13,6 +13,7 @@ from shaftprint.errors import SettingsError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.settings import Name, PositiveNumber, Settings, names_twice, read_settings
+from shaftprint.spelling import listed
 
 
 class FitWay(Settings):
@@ -121,7 +122,11 @@ class Drive(Shown, Settings):
 
     def _faults_of_channels(self) -> list[str]:
         missing = [one.name for one in self.signals if one.channel is None]
-        return [f"expected the channel of {missing[0]}, found none."] if missing else []
+        if missing:
+            return [f"expected the channel of {missing[0]}, found none."]
+        (twice, *_) = names_twice([str(one.channel) for one in self.signals]) or (None,)
+        shared = [one.name for one in self.signals if one.channel == twice]
+        return [] if twice is None else [f"expected every signal its own channel, found {twice} for {listed(shared)}."]
 
     def _faults_of_responses(self) -> list[str]:
         only = self.inputs[0].name if len(self.inputs) == 1 else None
