@@ -48,6 +48,13 @@ def test_page_shows_every_record_and_the_fingerprint(motor):
     for words in ("Fingerprint of bench motor", "slow", "LOADED-MOTOR", "binary.csv", "motor.toml"):
         assert words in page
     assert "engine" not in page
+    assert "K_m^2" not in page
+    assert page.count("The 95 % interval is that of the profile likelihood") == 1
+    # the first page answers, before the verdict in the words of the fit
+    cover = page[page.index('id="found"') : page.index('id="verdict"')]
+    for words in ("Can the result be used?", "Does the model explain the records?", "What was found", "What to do:"):
+        assert words in cover
+    assert '<a href="#found">Page one</a>' in page
 
 
 def test_noise_is_that_of_the_sensors(motor):

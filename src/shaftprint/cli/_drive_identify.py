@@ -34,7 +34,7 @@ with late():
     from shaftprint.report._drive_page import render_drive
     from shaftprint.survey._fit_options import FitOptions
     from shaftprint.tables._drive import drive_assumed_table, drive_record_table, drive_response_table
-    from shaftprint.tables._fingerprint import quantity_table
+    from shaftprint.tables._fingerprint import combination_table, quantity_table
 
 
 def identify_on_the_bench(
@@ -99,7 +99,7 @@ def _print_rest(fingerprint: DriveFingerprint) -> None:
     say(f"{fingerprint.drive}; structure {fingerprint.structure}")
     tables = [quantity_table("Identified parameters", fingerprint.parameters)]
     if fingerprint.combinations:
-        tables.append(quantity_table("Combinations of parameters", fingerprint.combinations))
+        tables.append(combination_table(fingerprint))
     tables.append(drive_response_table(fingerprint) if fingerprint.responses else drive_record_table(fingerprint))
     if fingerprint.priors or fingerprint.held:
         tables.append(drive_assumed_table(fingerprint))

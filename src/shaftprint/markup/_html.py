@@ -8,7 +8,8 @@ from shaftprint.digits import typographic
 from shaftprint.markup._symbols import is_symbol, name_parts
 from shaftprint.plain_table import Symbol, Table
 
-_SYMBOL = re.compile(r"\b(?:(?:[A-Za-z]|tau|omega)_[A-Za-z0-9]+|zeta)\b")
+_SYMBOL = re.compile(r"\b(?:(?:[A-Za-z]|tau|omega)_[A-Za-z0-9]+(?:\^\d+)?|zeta)\b")
+_POWER = re.compile(r"\^(\d+)")
 # what is typed: a command between backticks, or an option by itself
 _TYPED = re.compile(r"`[^`\n]+`|(?<![\w-])--[a-z][a-z-]+")
 _LETTERS = {"tau": "τ", "omega": "ω", "zeta": "ζ", "delta": "δ", "eta": "η", "rho": "ρ"}
@@ -45,7 +46,7 @@ def symbol_html(formula: str) -> Markup:
     """Return a parameter name or formula as HTML: letters slanted, indices lowered; ordinary words stay as they are."""
     parts = Markup()
     for before, base, index in name_parts(formula):
-        parts += escape(before)
+        parts += _raised(before)
         if not base:
             continue
         if not is_symbol(base, index):
@@ -55,3 +56,12 @@ def symbol_html(formula: str) -> Markup:
         if index:
             parts += Markup("<sub>{}</sub>").format(index)
     return parts
+
+
+def _raised(text: str) -> Markup:
+    """Return text between symbols as HTML, powers such as ^2 raised."""
+    parts, end = Markup(), 0
+    for match in _POWER.finditer(text):
+        parts += escape(text[end : match.start()]) + Markup("<sup>{}</sup>").format(match[1])
+        end = match.end()
+    return parts + escape(text[end:])

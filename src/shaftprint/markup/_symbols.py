@@ -5,6 +5,7 @@ import re
 from shaftprint.escape import printable
 
 _GREEK = {"tau", "omega", "zeta", "delta", "eta", "rho"}
+_POWER = re.compile(r"\^(\d+)")
 _NAME = re.compile(r"[A-Za-z]+(?:_[A-Za-z0-9]+)?")
 
 
@@ -29,7 +30,7 @@ def mathtext(formula: str) -> str:
     """Return a parameter name or formula such as ``K_p / K_i`` as mathtext; ordinary words stay words."""
     words = []
     for before, base, index in name_parts(formula):
-        words.append(plain_label(before))
+        words.append(_POWER.sub(r"$^{\1}$", plain_label(before)))
         if not base:
             continue
         if not is_symbol(base, index):

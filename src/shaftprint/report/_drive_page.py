@@ -1,4 +1,4 @@
-"""The report of a drive that is no ship's: verdict, numbers, records, files."""
+"""The report of a drive that is no ship's: first page, verdict, numbers, records, files."""
 
 from collections.abc import Callable
 from functools import partial
@@ -11,12 +11,13 @@ from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
 from shaftprint.fingerprint._json_file import fingerprint_sha256
 from shaftprint.forecast._simulation import SimulatedSignal
 from shaftprint.plain_table import Table, texts
+from shaftprint.report._drive_cover import drive_cover
 from shaftprint.report._page import Page, write_page
 from shaftprint.report.figures._left import left_chart, outside
 from shaftprint.report.figures._simulation import simulation_chart
 from shaftprint.report.sections._sections import Picture, Section, picture_name
 from shaftprint.tables._drive import drive_assumed_table, drive_record_table, drive_response_table
-from shaftprint.tables._fingerprint import quantity_table
+from shaftprint.tables._fingerprint import combination_table, quantity_table
 from shaftprint.time_domain._record_fit import RecordFit
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ def render_drive(
         subtitle=f"Structure {fingerprint.structure}, {_counted(fingerprint)}",
         created=fingerprint.created,
         version=fingerprint.shaftprint_version,
+        cover=drive_cover(fingerprint),
         sections=(
             _verdict(fingerprint),
             _numbers(fingerprint),
@@ -80,7 +82,7 @@ def _verdict(fingerprint: DriveFingerprint) -> Section:
 def _numbers(fingerprint: DriveFingerprint) -> Section:
     tables = [quantity_table("Identified parameters", fingerprint.parameters)]
     if fingerprint.combinations:
-        tables.append(quantity_table("Combinations of parameters", fingerprint.combinations))
+        tables.append(combination_table(fingerprint))
     return Section(key="numbers", title="Numbers", tables=tables)
 
 

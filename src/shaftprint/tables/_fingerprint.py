@@ -9,6 +9,7 @@ from shaftprint.plain_table import MEANING, Column, Symbol, Table, numbers, text
 from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
+    from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
     from shaftprint.fingerprint._fingerprint import Fingerprint, Quality
     from shaftprint.identify.fit._estimate import Estimate
     from shaftprint.identify.fit._identification import Identification
@@ -37,9 +38,12 @@ def parameter_table(fingerprint: "Fingerprint", truth: Mapping[str, float] = NO_
     return quantity_table("Identified parameters, normalised with the working point", fingerprint.parameters, truth)
 
 
-def combination_table(fingerprint: "Fingerprint", truth: Mapping[str, float] = NO_TRUTH) -> Table:
-    """Return the combinations of parameters that the test finds better than the parameters alone."""
-    return quantity_table("Combinations of parameters", fingerprint.combinations, truth)
+def combination_table(fingerprint: "Fingerprint | DriveFingerprint", truth: Mapping[str, float] = NO_TRUTH) -> Table:
+    """Return the combinations of parameters that the test finds better than the parameters alone.
+
+    It stands below the table of the parameters, whose note is its own.
+    """
+    return quantity_table("Combinations of parameters", fingerprint.combinations, truth, note="")
 
 
 def physical_table(fingerprint: "Fingerprint", truth: Mapping[str, float] = NO_TRUTH) -> Table:

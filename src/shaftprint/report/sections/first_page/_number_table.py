@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from shaftprint.digits import plain, unit_text
+from shaftprint.digits import fine_unit, plain, unit_text
 from shaftprint.plain_table import Table, numbers, texts
 from shaftprint.report.sections.first_page._doubts import doubt_of, is_off
 from shaftprint.tables._fingerprint import expected_text
@@ -63,7 +63,10 @@ def expected_shown(quantity: "Estimate") -> str:
 
 
 def _scale(quantity: "Estimate") -> tuple[float, str]:
-    return (MILLI, "ms") if quantity.unit == "s" else (1.0, unit_text(quantity.unit))
+    if quantity.unit == "s":
+        return MILLI, "ms"
+    scale, unit = fine_unit(quantity.unit, quantity.value, *quantity.ends_95)
+    return scale, unit_text(unit)
 
 
 def _decimals(value: float, width: float) -> int:
