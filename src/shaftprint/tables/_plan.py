@@ -104,9 +104,9 @@ def abort_table(card: "AbortCard") -> Table:
         ("length", length_words(card.duration_s), "the water ahead will not last so long"),
     )
     how = (
-        f"To stop: hold the set point at {_level(card)}, which asks for {plain(card.level_rpm, 0)} rpm, "
-        "take the generator off, then slow down as usual. What was recorded up to then can be used to its last whole "
-        "period."
+        f"Within these numbers all is as planned, noise included. To stop: hold the set point at {_level(card)}, which "
+        f"asks for {plain(card.level_rpm, 0)} rpm, take the generator off, then slow down as usual. What was recorded "
+        "up to then can be used to its last whole period."
     )
     return Table(title="Card for the bridge", columns=texts("what", "is seen", "stop when"), rows=rows, note=how)
 

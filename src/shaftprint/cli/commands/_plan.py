@@ -19,7 +19,7 @@ from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, vessel_option
 from shaftprint.cli._plan_options import limit_of, seconds_of, shares_of, wish_from, wish_of
 from shaftprint.cli._ship_options import known_options
-from shaftprint.cli._terminal import answer, echo, print_findings
+from shaftprint.cli._terminal import answer, details, echo, is_detailed, print_findings, say
 from shaftprint.cli._vessel_file import checked_vessel
 from shaftprint.cli.output._fingerprint_file import REPORT, fingerprint_at
 from shaftprint.cli.output._json import give
@@ -55,7 +55,8 @@ _OF_SHIPS = (
 @click.command(
     "plan",
     cls=SectionedCommand,
-    example="shaftprint plan --vessel mine.toml --within 12min --wish t_d=20% --wish K_p=6% -o my_plan",
+    example="shaftprint plan --vessel mine.toml --within 12min --limit set-point=0.7mA -o my_plan\n"
+    "shaftprint plan --vessel mine.toml --within 12min --limit set-point=1.0V --wish t_d=20% --wish K_p=6% -o my_plan",
     sections={
         "Needed (a ship: --vessel and --limit set-point; a drive: --drive)": (
             "--vessel", "--limit", "--output", "--drive",
@@ -257,9 +258,12 @@ def print_planned_test(planned: PlannedTest, folder: Path) -> None:
     answer(first)
     echo()
     card = abort_card(planned)
-    print_tables([wish_table(planned)])
+    print_tables([wish_table(planned), abort_table(card)])
     print_findings("What to know of it", [*others, f"Planned with the {planned.noise_source}."])
-    print_tables([predicted_number_table(planned), planned_leg_table(planned), abort_table(card)])
+    with details():
+        print_tables([predicted_number_table(planned), planned_leg_table(planned)])
+    if not is_detailed():
+        say("What it would tell of each number, and its legs: --verbose, or the page.\n")
     give("duration_s", planned.campaign.duration_s)
     give("rehearsed", planned.rehearsal is not None)
     give("met", planned.plan.is_enough)

@@ -103,6 +103,8 @@ def _first_page(cover: "Cover", looks: Looks) -> list[Any]:
         story.append(Grid([[facts, drawing]], colWidths=[0.44 * WIDTH_MM * mm, 0.56 * WIDTH_MM * mm]))
     else:
         story += facts
+    for table in cover.leading:
+        story += _table(table, looks)
     story += [_cards(cover.cards, looks), Spacer(1, 2 * mm)]
     for table in cover.tables:
         story += _table(table, looks)

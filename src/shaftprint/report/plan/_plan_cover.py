@@ -1,12 +1,13 @@
-"""The first page of a plan: are the wishes met, are the limits kept, was it rehearsed."""
+"""The first page of a plan: the card for the bridge, are the wishes met, are the limits kept, was it rehearsed."""
 
 from typing import TYPE_CHECKING
 
 from shaftprint.design.plan._plan import length_words
+from shaftprint.design.views._abort_card import abort_card
 from shaftprint.digits import plain
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.report.sections._cover import Card, Cover
-from shaftprint.tables._plan import swing_words, wish_table
+from shaftprint.tables._plan import abort_table, swing_words, wish_table
 from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def plan_cover(test: "PlannedTest") -> Cover:
             "Predicted, not measured: standard deviations to first order, for the assumed ship and noise. Planned with "
             f"the {test.noise_source}."
         ),
+        leading=(abort_table(abort_card(test)),),
         cards=cards,
         facts=_facts(test),
         tables=(wish_table(test),) if test.plan.wish.names else (),
@@ -106,4 +108,4 @@ def _remarked(test: "PlannedTest") -> list[Card]:
     """Return what is to be known before the test is sailed, such as a noise that nobody has measured."""
     if not test.remarks:
         return []
-    return [Card(question="What else is to be known before it?", state="look", sentence=" ".join(test.remarks))]
+    return [Card(question="What should you know before you sail it?", state="look", sentence=" ".join(test.remarks))]

@@ -8,7 +8,6 @@ from shaftprint.arguments import refusing_none
 from shaftprint.design.files._plan_folder import CAMPAIGN
 from shaftprint.design.files._plan_json import PLAN
 from shaftprint.design.files._set_point_files import CSV, GENERATOR, MAT
-from shaftprint.design.views._abort_card import abort_card
 from shaftprint.design.views._line_worth import line_worths
 from shaftprint.design.views._other_lengths import length_curve
 from shaftprint.design.views._planned_motion import planned_motion
@@ -25,7 +24,7 @@ from shaftprint.report.figures._plan import (
 from shaftprint.report.plan._plan_cover import plan_cover
 from shaftprint.report.sections._meanings import explained
 from shaftprint.report.sections._sections import Picture, Section
-from shaftprint.tables._plan import abort_table, planned_leg_table, predicted_number_table
+from shaftprint.tables._plan import planned_leg_table, predicted_number_table
 
 if TYPE_CHECKING:
     from shaftprint.design.inputs._lever import Lever
@@ -46,7 +45,7 @@ def render_plan(directory: str | Path, test: "PlannedTest") -> Path:
         version=test.version,
         cover=plan_cover(test),
         sections=(
-            _card(test),
+            _legs(test),
             _numbers(test),
             _motion(test),
             _lines(test),
@@ -63,15 +62,11 @@ def render_plan(directory: str | Path, test: "PlannedTest") -> Path:
     return write_page(directory, page)
 
 
-def _card(test: "PlannedTest") -> Section:
+def _legs(test: "PlannedTest") -> Section:
     return Section(
-        key="bridge",
-        title="Card for the bridge",
-        paragraphs=(
-            "For whoever stands on the bridge while the test runs. Within these numbers all is as planned, noise "
-            "included; beyond them the test is broken off.",
-        ),
-        tables=(abort_table(abort_card(test)), planned_leg_table(test)),
+        key="legs",
+        title="What is asked of the ship",
+        tables=(planned_leg_table(test),),
         pictures=(
             Picture(
                 name="set_point",

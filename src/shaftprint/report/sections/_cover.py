@@ -59,6 +59,8 @@ class Cover:
     """What has changed since an earlier test, in one line; empty where there is none."""
     facts: Sequence[tuple[str, str]] = ()
     """Date, place and the like: name and value."""
+    leading: Sequence[Table] = ()
+    """What is needed before any answer, such as the card for the bridge; it stands above the questions."""
     tables: Sequence[Table] = ()
     """The numbers that matter."""
     sketch: "Sketch | None" = None
