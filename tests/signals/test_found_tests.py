@@ -52,6 +52,20 @@ def test_a_test_as_planned_has_nothing_to_be_said(name):
     assert findings_of(setpoint(campaign, time), campaign) == ()
 
 
+@pytest.mark.parametrize(("shift_s", "legs"), [(7.3, 1), (-2.5, 1), (7.3, 2), (25.0, 2)])
+def test_a_shift_of_one_or_two_legs_is_told_as_such(shift_s, legs):
+    """A course stands at one place alone; of two legs it was so far a clock that runs apart."""
+    planned = load_campaign("12min")
+    content = planned.model_dump() | {"multisines": planned.multisines[:legs], "staircases": ()}
+    campaign = Campaign.model_validate(content | {"duration_s": planned.duration_s + 30.0})
+    # in the middle of the recording, whichever way it is shifted
+    volts = setpoint(campaign, grid(campaign.duration_s) - shift_s)
+    assert common_shift_s(found_of(volts, campaign)) == pytest.approx(shift_s, abs=0.01)
+    way = "earlier" if shift_s > 0.0 else "later"
+    with pytest.raises(SignalError, match=f"recording starts {abs(shift_s):.2f} s {way} than the campaign says"):
+        findings_of(volts, campaign)
+
+
 @pytest.mark.parametrize("shift_s", [-3.0, 2.5, 60.0])
 def test_a_shift_of_all_is_one_number(shift_s):
     """The staircase begins at 10 s: with -3 s it is still there."""

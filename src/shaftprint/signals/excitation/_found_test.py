@@ -13,6 +13,8 @@ from shaftprint.campaign._excitations import Sine
 _SAME_BEGIN_S, _SAME_PHASE_DEG = 0.3, 20.0
 _SAME_AMPLITUDE = 0.1
 _FEWEST_ALIKE, _ALIKE_SHARE = 3, 0.75
+# One course or two on a clock of their own are shifted too, but by less, or not by the same [s].
+_LEAST_SHIFT_S, _SAME_SHIFT_S = 1.0, 0.1
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -124,12 +126,20 @@ class FoundTest:
 def common_shift_s(found: Sequence[FoundTest]) -> float:
     """Return by how much later than the campaign nearly all tests begin [s]; 0 where they do not, or do not agree."""
     there = [test for test in found if test.is_found]
-    if len(there) < _FEWEST_ALIKE:
-        return 0.0
     later = np.array([test.later_s for test in there])
+    if later.size < _FEWEST_ALIKE and not _are_courses_shifted(found):
+        return 0.0
     alike = np.abs(later - np.median(later)) < _SAME_BEGIN_S
     if alike.mean() < _ALIKE_SHARE or abs(float(np.median(later))) < _SAME_BEGIN_S:
         return 0.0
     # the phase of a slow sine knows it better than its begin does
     exact = [test.rising_s - test.planned.start_s for test, same in zip(there, alike.tolist(), strict=True) if same]
     return float(np.median(exact))
+
+
+def _are_courses_shifted(found: Sequence[FoundTest]) -> bool:
+    """Return whether all of few tests are courses, each of which stands at one place alone, and begin as much later."""
+    if not found or any(isinstance(test.planned, Sine) or not test.is_same for test in found):
+        return False
+    later = [test.later_s for test in found]
+    return min(map(abs, later)) > _LEAST_SHIFT_S and max(later) - min(later) < _SAME_SHIFT_S
