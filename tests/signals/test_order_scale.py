@@ -86,6 +86,16 @@ def test_a_ratio_that_is_far_off_is_none_of_the_speed(factor, pulses):
     assert "pulses_per_revolution" not in reason.sentence
 
 
+@pytest.mark.parametrize("blades", [4, 5])
+@pytest.mark.parametrize("ratio", [5.2, 3.1])
+def test_another_ratio_with_other_blades_is_another_ship(ratio, blades):
+    """The tug has three blades and 3.82: of another ship shaft order, blades and their double stand elsewhere."""
+    (reason,) = reasons_of(vessel_of("engine", 60), ratio=ratio, propeller={1: 0.02, blades: 0.05, 2 * blades: 0.02})
+    fitting = float(reason.sentence.split("3.82 is stated, ")[1].split()[0])
+    assert (reason.kind, fitting) == ("gear ratio", pytest.approx(ratio, rel=1e-3))
+    assert f"would fit, with {blades} blades; check whether the vessel file is of this ship" in reason.sentence
+
+
 @pytest.mark.parametrize("pulses", [10, 14])
 def test_a_count_that_is_far_off_is_none_of_the_gears(pulses):
     engine = {0.5: 0.03, 3.0: 0.03}

@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.reasons import Reason
+from shaftprint.reasons import OTHER_SHIP, Reason
 from shaftprint.signals._scale_reasons import what_to_check
 from shaftprint.signals.levels._order_lines import OrderLines, order_lines
+from shaftprint.vessel._orders import orders_of
 
 if TYPE_CHECKING:
     from shaftprint.arrays import BoolArray, FloatArray
@@ -33,6 +34,8 @@ _FARTHEST, _FARTHEST_OF_GEARS = 0.2, 0.5
 # How exact turns that are counted are, a gear ratio of three digits, and an instrument that counts nothing.
 _OF_COUNT, _OF_RATIO, _OF_INSTRUMENT = 5e-4, 3e-3, 0.015
 _FEWEST, _SHARE = 2, 0.6
+# Blades of propellers that are built, and the orders that are looked for of each.
+_BLADES, _ALL_OF_PROPELLER = (3, 4, 5, 6, 7), 3
 # A tooth more or less is told where the factor is as exact as this share of it.
 _OF_TOOTH = 0.25
 
@@ -51,6 +54,8 @@ class _Explained:
     """Sum of the sizes of their lines."""
     error: float
     """How far the factor may be off."""
+    blades: int = 0
+    """Number of blades that the propeller then has; 0 where it is as stated."""
 
 
 def reasons_of_orders(
@@ -83,11 +88,7 @@ def reasons_of_orders(
         of_speed = None
     apart = _of(lines, ~of_own)
     as_stated = bool(_explained(apart, other, 1.0, exact=exact + _OF_RATIO).lines)
-    of_gears = (
-        None
-        if as_stated
-        else _best(apart, other, exact=exact, belonging=of_other[~of_own], farthest=_FARTHEST_OF_GEARS)
-    )
+    of_gears = None if as_stated else _best_of_gears(apart, other, vessel, exact=exact, belonging=of_other[~of_own])
     if of_speed is not None and of_gears is not None:
         # one of them stands where an order of the other cause would: what explains more lines is the cause
         own_lines = _explained(lines, own, 1.0, exact=exact).lines
@@ -95,6 +96,29 @@ def reasons_of_orders(
     if of_speed is not None:
         return (_of_speed(of_speed, speed, vessel),)
     return () if of_gears is None else (_of_gears(of_gears, sensor, speed, vessel, is_own=bool(of_own.any())),)
+
+
+def _best_of_gears(
+    lines: OrderLines, orders: "Sequence[Order]", vessel: "Vessel", *, exact: float, belonging: "BoolArray"
+) -> _Explained | None:
+    """Return the factor of the gears that explains most lines, with another number of blades where that explains more.
+
+    Of a propeller that neither ratio nor blades of the file describe its own order, that of the blades and their double
+    have to stand there, all three.
+    """
+    stated = _best(lines, orders, exact=exact, belonging=belonging, farthest=_FARTHEST_OF_GEARS)
+    every = [] if stated is None else [stated]
+    if not any(order.shaft == "propeller" for order in orders):
+        return stated
+    for blades in _BLADES:
+        propeller = vessel.propeller.model_copy(update={"blades": blades})
+        of_all = orders_of(vessel.machine, vessel.gearbox, propeller)
+        others = [one for one in of_all if one.shaft == "propeller" and one.per_engine_turn < lines.highest]
+        found = _best(lines, others, exact=exact, belonging=belonging, farthest=_FARTHEST_OF_GEARS)
+        if found is not None and len(found.orders) == _ALL_OF_PROPELLER:
+            every.append(replace(found, blades=blades))
+    # the first of those that explain as much
+    return max(every, key=lambda one: len(one.lines), default=None)
 
 
 def _multiples(lines: OrderLines, orders: "Sequence[Order]", exact: float) -> "BoolArray":
@@ -191,11 +215,17 @@ def _of_speed(found: _Explained, speed: "SpeedSignal", vessel: "Vessel") -> Reas
 
 
 def _of_gears(
-    found: _Explained, sensor: "SpeedSensor", speed: "SpeedSignal", vessel: "Vessel", *, is_own: bool
+    found: _Explained,
+    sensor: "SpeedSensor",
+    speed: "SpeedSignal",
+    vessel: "Vessel",
+    *,
+    is_own: bool,
 ) -> Reason:
     ratio, is_behind = vessel.gearbox.ratio, sensor.shaft == "propeller"
     fitting = ratio * found.factor if is_behind else ratio / found.factor
     beside = f", and those of the {sensor.shaft}'s own shaft where they belong" if is_own else ""
+    with_blades = f", with {found.blades} blades; check {OTHER_SHIP}" if found.blades else ""
     instead = "" if is_own else f", or {what_to_check(1.0 / found.factor, vessel)}"
     return Reason(
         # an engine speed that comes through the gears is off itself
@@ -203,6 +233,6 @@ def _of_gears(
         where=speed.channel,
         sentence=(
             f"The gear ratio is in doubt: {_where(found, speed)}{beside}; check gearbox.ratio: {ratio:g} is stated, "
-            f"{fitting:.4g} would fit{instead}."
+            f"{fitting:.4g} would fit{instead}{with_blades}."
         ),
     )
