@@ -11,6 +11,8 @@ CLOSED_LOOPS: Final[Mapping[str, str]] = MappingProxyType(
     {"engine": "GAUGE-CLOSED", "motor": "GAUGE-MOTOR", "hybrid": "GAUGE-HYBRID"}
 )
 """Names of the closed loops of ships, by what drives the line."""
+SAILING_LOOP: Final = "FREE-CLOSED"
+"""Name of the closed loop of an engine and a ship that sails free."""
 PITCHED_LOOP: Final = "GAUGE-PITCH"
 """Name of the closed loop of an engine and a propeller of controllable pitch, at the quay."""
 COMBINED_LOOP: Final = "GAUGE-COMBINATOR"

@@ -154,10 +154,9 @@ def test_states_are_told_by_speed_and_torque(vessel, speed_rpm, torque_nm, state
     assert STATES[found] == state
 
 
-def test_lines_without_a_model_are_refused(vessel):
-    hull = load_vessel("stan-tug-1205-underway")
-    with pytest.raises(ServiceError, match="found that the ship sails free"):
-        scan(["log.nc"], hull)
+def test_lines_without_a_model_are_refused():
+    with pytest.raises(ServiceError, match="found that the pitch is controllable"):
+        scan(["log.nc"], load_vessel("nifs-research-vessel"))
 
 
 def test_shipped_tug_in_service_is_the_same_tug(vessel):
@@ -165,6 +164,9 @@ def test_shipped_tug_in_service_is_the_same_tug(vessel):
     same = {"name": other.name, "sensors": other.sensors, "logger": other.logger}
     assert vessel.model_copy(update=same) == other
     assert vessel.sensors.set_point.volts(1183.8) == pytest.approx(-5.0, abs=1e-6)
+    moving, underway = load_vessel("stan-tug-1205-service-underway"), load_vessel("stan-tug-1205-underway")
+    assert moving.model_copy(update={one: getattr(underway, one) for one in same}) == underway
+    assert (moving.sensors, moving.logger) == (vessel.sensors, vessel.logger)
 
 
 def test_a_ship_whose_sensors_no_service_log_shows_is_told_of_one_that_has_them(tmp_path):

@@ -22,7 +22,7 @@ def kept(tmp_path):
         size=1.0 / 3.0,
         is_last=False,
     )
-    progress = Progress(path=tmp_path / "fit.json", key="this")
+    progress = Progress(path=tmp_path / "fit.json", key="this", free=len(FREE))
     progress.keep(reached)
     return progress, reached
 
@@ -39,8 +39,8 @@ def test_every_bit_comes_back(kept):
 def test_other_segments_begin_anew(kept):
     progress, _ = kept
     assert progress.reached(21) is None
-    assert Progress(path=progress.path, key="other").reached(20) is None
-    assert Progress(path=progress.path.with_name("none.json"), key="this").reached(20) is None
+    assert Progress(path=progress.path, key="other", free=len(FREE)).reached(20) is None
+    assert Progress(path=progress.path.with_name("none.json"), key="this", free=len(FREE)).reached(20) is None
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", '{"key": "this"}', '{"key": "this", "theta": "x"}'])

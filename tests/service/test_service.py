@@ -280,12 +280,11 @@ def test_clock_of_the_lever_is_held_against_a_fingerprint(worked, vessel, late_s
     model = service_model(vessel)
     model = replace(model, values={**model.values, **{k: v for k, v in truth.normalised.items() if k in FREE}})
     line = lever_line(gathered.still)
-    point = {"speed_rev_s": model.engine_speed_rev_s, "torque_nm": model.shaft_torque_nm, "tau_dn": 0.32}
     late = [
         replace(one, lever_v=np.roll(one.lever_v, round(late_s * one.rate_hz)))
         for one in gathered.segments
         if not one.reason
     ]
-    found = shift_of_lever(simulated([one.record(line, **point) for one in late], model, model.theta), model)
+    found = shift_of_lever(simulated(model.records(late, line), model, model.theta), model)
     assert found.value == pytest.approx(1e3 * late_s, abs=12.0)
     assert bool(found.refused) == (late_s > 0.02)

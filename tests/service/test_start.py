@@ -48,6 +48,6 @@ def test_a_speed_that_comes_before_the_lever_is_on_another_clock(t_d, t_sp, is_r
     fit = SimpleNamespace(theta=theta, covariance=covariance)
     if is_refused:
         with pytest.raises(ServiceError, match="do not share one clock"):
-            _expect_one_clock(fit, Path("day.csv"))
+            _expect_one_clock(fit, FREE, Path("day.csv"))
     else:
-        _expect_one_clock(fit, Path("day.csv"))
+        _expect_one_clock(fit, FREE, Path("day.csv"))

@@ -23,7 +23,7 @@ def test_a_step_goes_its_way_but_no_farther_than_a_quarter_of_a_gain_or_lag(monk
     theta = np.array([HERE[name] for name in FREE])
     asked = 0.01 * theta
     asked[FREE.index("omega_n")] *= -100.0 * share
-    tried, _, _ = _fit._stepped([], [], None, asked, None, theta, None, guided=False)
+    tried, _, _ = _fit._stepped([], [], None, asked, SimpleNamespace(free=FREE), theta, None, guided=False)
     assert (tried - theta) / asked == pytest.approx(min(1.0, 0.25 / share))
 
 
@@ -36,7 +36,7 @@ def test_what_stands_at_its_bound_stays_there_and_no_other_number_makes_up_for_i
     information[delay, latency] = information[latency, delay] = 0.95
     slope = np.zeros(len(FREE))
     slope[delay] = -1.0
-    sums = _fit.Sums(slope=slope, information=information, prior=np.zeros_like(information))
+    sums = _fit.Sums(slope=slope, information=information, prior=np.zeros_like(information), free=FREE)
     assert sums.step[latency] > 5.0
     assert np.all(sums.step_from(theta) == 0.0)
     theta[delay] = 0.1

@@ -83,6 +83,13 @@ def test_way_on_shows_in_the_torque_across_moves(exponent, is_refused):
     assert bool(found.refused) == is_refused
 
 
+@pytest.mark.parametrize(("exponent", "is_refused"), [(2.0, True), (2.42, False)])
+def test_a_file_of_a_ship_underway_asks_for_way_on(exponent, is_refused):
+    rng = np.random.default_rng(5)
+    found = way_on([segment(*rng.uniform(12.0, 26.0, 2), exponent, rng) for _ in range(40)], sails=True)
+    assert ("makes no way" in found.refused) == is_refused
+
+
 def test_bend_of_the_lever_is_measured_as_far_as_its_scatter_tells_it():
     rng = np.random.default_rng(3)
     stretch = np.repeat(np.arange(40.0), 6)

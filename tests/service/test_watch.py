@@ -171,8 +171,8 @@ def test_days_against_another_fingerprint_are_refused(model):
 def test_a_folder_that_is_no_day_is_told(tmp_path, model):
     with pytest.raises(ServiceError, match=r"found no values-against\.json and scores-against\.csv"):
         read_day(tmp_path)
-    (tmp_path / "values-against.json").write_text(theta_text(model.theta))
-    for text in ("", "log,move_s\n", scores_text([], []), scores_text([], []).replace("g_K_p", "x")):
+    (tmp_path / "values-against.json").write_text(theta_text(model.theta, model.free))
+    for text in ("", "log,move_s\n", scores_text([], [], FREE), scores_text([], [], FREE).replace("g_K_p", "x")):
         (tmp_path / "scores-against.csv").write_text(text)
         with pytest.raises(ServiceError, match="found something else; fit the day again"):
             read_day(tmp_path)

@@ -15,6 +15,7 @@ simulated would change with ``t_sp`` in jumps of a step, its derivative zero.
 """
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from shaftprint.catalogue._actuation import ENGINE, MOTOR, Actuation
@@ -57,6 +58,7 @@ def limited(
     name: str = "",
     with_rack: bool = False,
     by_motor: bool = False,
+    load: "LoadPart | None" = None,
 ) -> Structure:
     """Return the gauge-aware closed loop with a quadratic propeller and some limits.
 
@@ -81,12 +83,13 @@ def limited(
         If there is no limit of a name, or a smoke limit without a torque limit.
     """
     extra, actuation = parameters_of(limits), MOTOR if by_motor else ENGINE
+    load = load or BOLLARD
     loop = Diagram(
         name="limited loop",
         input="demand",
-        outputs=("n", "M_s", "X"),
-        equations=LimitedLoop(limits, curve, period_s, bollard_load, actuation),
-        of=(*actuation.parameters, TAU_DN, TAU_UP, K_Q, *actuation.speed_slope, DROOP, *extra),
+        outputs=("n", "M_s", "X", *load.shows),
+        equations=LimitedLoop(limits, curve, period_s, load.equations, actuation),
+        of=(*actuation.parameters, TAU_DN, TAU_UP, K_Q, *load.parameters, *actuation.speed_slope, DROOP, *extra),
     )
     demand, ports = Gain(C_SET), loop.ports()
     rack = {"X": demand * ports["X"] * Delay(T_SP)} if with_rack else {}
@@ -99,6 +102,7 @@ def limited(
             "n": demand * ports["n"] * Delay(T_SP) * speed_sensor(),
             "M_s": demand * ports["M_s"] * Delay(T_SP) * torque_sensor(),
             **rack,
+            **{name: demand * ports[name] * Delay(T_SP) for name in load.shows},
         },
         combinations=actuation.combinations,
     )
@@ -121,6 +125,18 @@ Load: TypeAlias = Callable[[Flow, Formula, Any], tuple[Formula, Mapping[str, For
 """Takes equations, shaft speed and parameters; gives the torque of the propeller, and what else there is to see."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LoadPart:
+    """What a line drives."""
+
+    equations: Load
+    """Its torque by the shaft speed."""
+    parameters: tuple[Parameter, ...] = ()
+    """What they ask for beside ``k_q``."""
+    shows: tuple[str, ...] = ()
+    """What else there is to see."""
+
+
 Observer: TypeAlias = Callable[[Formula], Formula]
 """Takes the brake torque; gives what it adds to the rate of the governor's integrator."""
 
@@ -136,6 +152,10 @@ def shape_of(curve: tuple[tuple[float, float], ...]) -> Shape:
 def bollard_load(flow: Flow, speed: Formula, p: Any) -> tuple[Formula, Mapping[str, Formula]]:
     """Return the torque of a propeller at the quay, and nothing else."""
     return quadratic_propeller(speed, p.k_q), {}
+
+
+BOLLARD = LoadPart(equations=bollard_load)
+"""A propeller at the quay."""
 
 
 class LimitedEngine:

@@ -15,7 +15,7 @@ from shaftprint.escape import csv_cell
 from shaftprint.files import reason
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._json_file import read_fingerprint
-from shaftprint.service._model import FREE
+from shaftprint.service._model import FREE, FREE_UNDERWAY
 from shaftprint.service._score import Score
 from shaftprint.service._segment import Segment
 
@@ -23,8 +23,6 @@ SCORES, VALUES = "scores.csv", "values.json"
 """Files of a day beside the fingerprint: slope and curvature of each segment, and at which values."""
 SCORES_AGAINST, VALUES_AGAINST = "scores-against.csv", "values-against.json"
 """The same at the fingerprint that its fit began from."""
-_PAIRS = [(i, j) for i in range(len(FREE)) for j in range(i, len(FREE))]
-_COLUMNS = ["log", "move_s", "noise", *(f"g_{n}" for n in FREE), *(f"H_{FREE[i]}_{FREE[j]}" for i, j in _PAIRS)]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -43,13 +41,27 @@ class Day:
     """The day's own."""
 
 
-def scores_text(segments: Sequence[Segment], scores: Sequence[Score]) -> str:
-    """Return slope and upper half of the curvature of each segment, as a table of text."""
+def _pairs(free: Sequence[str]) -> list[tuple[int, int]]:
+    """Return the places of the upper half of a curvature."""
+    return [(i, j) for i in range(len(free)) for j in range(i, len(free))]
+
+
+def _columns(free: Sequence[str]) -> list[str]:
+    """Return the titles of a table of scores."""
+    curvatures = (f"H_{free[i]}_{free[j]}" for i, j in _pairs(free))
+    return ["log", "move_s", "noise", *(f"g_{name}" for name in free), *curvatures]
+
+
+def scores_text(segments: Sequence[Segment], scores: Sequence[Score], free: Sequence[str]) -> str:
+    """Return slope and upper half of the curvature of each segment, as a table of text.
+
+    ``free``: names of the parameters.
+    """
     text = io.StringIO(newline="")
     table = csv.writer(text, lineterminator="\n")
-    table.writerow(_COLUMNS)
+    table.writerow(_columns(free))
     for segment, score in zip(segments, scores, strict=True):
-        numbers = [*score.slope.tolist(), *(float(score.information[i, j]) for i, j in _PAIRS)]
+        numbers = [*score.slope.tolist(), *(float(score.information[i, j]) for i, j in _pairs(free))]
         table.writerow(
             [
                 csv_cell(Path(segment.log).name),
@@ -61,9 +73,9 @@ def scores_text(segments: Sequence[Segment], scores: Sequence[Score]) -> str:
     return text.getvalue()
 
 
-def theta_text(theta: FloatArray) -> str:
-    """Return parameters as JSON."""
-    return json.dumps(dict(zip(FREE, theta.tolist(), strict=True)), indent=1) + "\n"
+def theta_text(theta: FloatArray, free: Sequence[str]) -> str:
+    """Return parameters as JSON, with their names ``free``."""
+    return json.dumps(dict(zip(free, theta.tolist(), strict=True)), indent=1) + "\n"
 
 
 def read_day(folder: Path) -> Day:
@@ -83,20 +95,21 @@ def read_day(folder: Path) -> Day:
     except (ValueError, csv.Error, RecursionError):
         raise ServiceError(_damaged(folder)) from None
     try:
-        theta = np.array([float(values[name]) for name in FREE])
-        if rows[0] != _COLUMNS:
+        free = FREE_UNDERWAY if FREE_UNDERWAY[-1] in values else FREE
+        theta = np.array([float(values[name]) for name in free])
+        if rows[0] != _columns(free):
             raise ValueError(rows[0])
-        numbers = np.array([[float(x) for x in row[3:]] for row in rows[1:]]).reshape(-1, len(_COLUMNS) - 3)
+        numbers = np.array([[float(x) for x in row[3:]] for row in rows[1:]]).reshape(-1, len(rows[0]) - 3)
     except (ValueError, TypeError, KeyError, IndexError):
         raise ServiceError(_damaged(folder)) from None
     if not (np.all(np.isfinite(numbers)) and np.all(np.isfinite(theta)) and len(numbers)):
         raise ServiceError(_damaged(folder))
-    information = np.zeros((len(numbers), len(FREE), len(FREE)))
-    for column, (i, j) in enumerate(_PAIRS, start=len(FREE)):
+    information = np.zeros((len(numbers), len(free), len(free)))
+    for column, (i, j) in enumerate(_pairs(free), start=len(free)):
         information[:, i, j] = information[:, j, i] = numbers[:, column]
     return Day(
         name=folder.name,
-        slopes=numbers[:, : len(FREE)],
+        slopes=numbers[:, : len(free)],
         information=information,
         theta=theta,
         fingerprint=read_fingerprint(folder / "fingerprint.json"),

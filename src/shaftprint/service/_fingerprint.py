@@ -5,6 +5,7 @@ loop for small signals, GAUGE-CLOSED; what they rest on, and no log shows, is sa
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,7 +17,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import K_Q, TAU_UP
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._shipped import shipped_structure
-from shaftprint.choices import CLOSED_LOOPS
+from shaftprint.choices import CLOSED_LOOPS, SAILING_LOOP
 from shaftprint.digits import stated
 from shaftprint.errors import ServiceError
 from shaftprint.fingerprint._conditions import Conditions, conditions_stated
@@ -29,7 +30,7 @@ from shaftprint.identify.likelihood._prior import PRIOR_OF, Prior
 from shaftprint.identify.uncertainty._budget import Budget
 from shaftprint.models._nyquist import is_stable
 from shaftprint.service._fit import ServiceFit
-from shaftprint.service._model import FREE, OVER_TORQUE, ServiceModel
+from shaftprint.service._model import OVER_TORQUE, ServiceModel
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._ship_numbers import (
     GAUGE_SCALE,
@@ -52,16 +53,36 @@ if TYPE_CHECKING:
 
 ORDINARY_SERVICE = "ordinary service"
 """What stands in a fingerprint in place of the name of a test."""
-STRUCTURE = CLOSED_LOOPS["engine"]
+STRUCTURE, STRUCTURE_UNDERWAY = CLOSED_LOOPS["engine"], SAILING_LOOP
 # A number is known well enough to this share of it; a set-point scale or a slope near nothing to this much.
 _WELL_ENOUGH, _WELL_ENOUGH_NEAR_NOTHING = 0.15, 0.1
 # From so many standard deviations on what the vessel file expects is worth a word.
 _STRANGE = 2.5
-ASSUMPTIONS = (
+_ASSUMED = (
     "Nobody trims the lever against the load at the moments at which he moves it anyway: no log shows that.",
-    "The ship lies at the quay or makes little way, and its propeller takes the square of the speed.",
     "The set point that was logged is what the control unit follows, with no rate limit of its own.",
 )
+_AT_THE_QUAY = "The ship lies at the quay or makes little way, and its propeller takes the square of the speed."
+_UNDERWAY = (
+    "The ship makes way ahead through calm, deep water all the time, its shafts follow one lever, and coefficients of "
+    "thrust and torque fall in a line with the advance ratio."
+)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Load:
+    """What the propeller takes at the speed of the working point over its torque there, mean of the service."""
+
+    value: float
+    """The load."""
+    std: float
+    """Its standard deviation by what differs from segment to segment."""
+    slope: FloatArray
+    """Its change for one unit of each free parameter, shape (free,)."""
+
+    def deviation(self, covariance: FloatArray) -> float:
+        """Return its standard deviation with the ``covariance`` of the free parameters, shape (free, free)."""
+        return float(np.sqrt(self.std**2 + self.slope @ covariance @ self.slope))
 
 
 def fingerprint_of_service(
@@ -72,7 +93,7 @@ def fingerprint_of_service(
     line: LeverLine,
     segments: Sequence[Segment],
     of: int,
-    load: tuple[float, float],
+    load: "Load",
     tables: Sequence[Path],
     now: datetime,
     tested_at: datetime | None = None,
@@ -82,7 +103,7 @@ def fingerprint_of_service(
 
     ``fit``, ``model``: the fit, normalised at the working point of the vessel file, and its model. ``vessel``: the
     installation. ``line``: what the lever asks for. ``segments``, ``of``: the segments that were fitted, and how many
-    moves there were. ``load``: mean load over that of the working point, and its standard deviation. ``tables``: the
+    moves there were. ``load``: mean load over that of the working point. ``tables``: the
     tables of segments. ``now``: time of making, with time zone. ``tested_at``: when the first log began, where that is
     known. ``trial``: draught and water, where somebody states them. Raises ServiceError if ``now`` has no time zone.
     """
@@ -91,16 +112,30 @@ def fingerprint_of_service(
     in_water = vessel
     if trial is not None and trial.water_density_kg_m3 is not None:
         in_water = vessel.model_copy(update={"water_density_kg_m3": trial.water_density_kg_m3})
-    structure = shipped_structure(STRUCTURE, set(FREE))
-    scale = np.array([1.0 / load[0] if name in OVER_TORQUE else 1.0 for name in FREE])
-    theta, covariance = fit.theta * scale, fit.covariance * np.outer(scale, scale)
-    of_prior = _of_prior(fit, model, scale)
-    held = {p.name: p.value for p in structure.parameters if p.name not in FREE} | {K_Q.name: 2.0}
-    torque_nm = load[0] * model.shaft_torque_nm
-    parameters = parameter_numbers(structure, theta)
-    combinations = combination_numbers(structure, theta, held)
-    physical = physical_numbers_of(structure, theta, model, in_water, torque_nm=torque_nm, load_std=load[1] / load[0])
-    margins = margin_numbers_of(structure, theta, held)
+    free = model.free
+    structure = shipped_structure(STRUCTURE_UNDERWAY if model.sails else STRUCTURE, set(free))
+    scale = np.array([1.0 / load.value if name in OVER_TORQUE else 1.0 for name in free])
+    theta = fit.theta * scale
+    # what hangs on the torque of the point hangs on all that the load there hangs on
+    over = theta * np.array([name in OVER_TORQUE for name in free])
+    turn = np.diag(scale) - np.outer(over, load.slope / load.value)
+    covariance = turn @ fit.covariance @ turn.T
+    of_prior = _of_prior(fit, model, turn)
+    held = {p.name: p.value for p in structure.parameters if p.name not in free} | {K_Q.name: 2.0}
+    torque_nm = load.value * model.shaft_torque_nm
+    parameters = parameter_numbers(structure, theta, free)
+    combinations = combination_numbers(structure, theta, held, free)
+    physical = physical_numbers_of(
+        structure,
+        theta,
+        model,
+        in_water,
+        torque_nm=torque_nm,
+        load_std=load.std / load.value,
+        load_slope=load.slope / load.value,
+        turn=turn,
+    )
+    margins = margin_numbers_of(structure, theta, held, free)
     numbers = [*parameters, *combinations, *physical, *margins]
     budget = Budget(
         sources=tuple(dict.fromkeys((SERVICE, *of_prior, GAUGE_SCALE, GAUGE_ZERO))),
@@ -110,7 +145,7 @@ def fingerprint_of_service(
     quantities = {
         kind: tuple(quantity_of(one, covariance, of_prior) for one in group) for kind, group in groups.items()
     }
-    stable = is_stable(structure, structure.vector(dict(zip(FREE, theta.tolist(), strict=True)) | held))
+    stable = is_stable(structure, structure.vector(dict(zip(free, theta.tolist(), strict=True)) | held))
     every = [one for group in quantities.values() for one in group]
     seconds = sum(one.seconds for one in segments)
     return Fingerprint(
@@ -122,16 +157,16 @@ def fingerprint_of_service(
             model,
             line,
             torque_nm=torque_nm,
-            torque_std_nm=load[1] * model.shaft_torque_nm,
+            torque_std_nm=load.deviation(fit.covariance) * model.shaft_torque_nm,
             tested_at=tested_at,
             trial=trial,
         ),
-        structure=STRUCTURE,
+        structure=structure.name,
         held=held,
         priors={
             name: Prior(model.known[name] * factor, std * factor)
             for name, std in model.prior_std.items()
-            for factor in (float(scale[FREE.index(name)]),)
+            for factor in (float(scale[free.index(name)]),)
         },
         covariance=tuple(tuple(row) for row in covariance.tolist()),
         **quantities,
@@ -140,13 +175,23 @@ def fingerprint_of_service(
         vessel_fields=vessel_fields(vessel),
         calibration=(),
         quality=_quality(fit),
-        verdict=_verdict(every, used=len(segments), of=of, seconds=seconds, stable=stable, misfit=fit.misfit.reason),
+        verdict=_verdict(
+            every,
+            used=len(segments),
+            of=of,
+            seconds=seconds,
+            stable=stable,
+            misfit=fit.misfit.reason,
+            sails=model.sails,
+        ),
         findings=_findings(fit, segments, of, line),
     )
 
 
-def _of_prior(fit: ServiceFit, model: ServiceModel, scale: FloatArray) -> dict[str, FloatArray]:
+def _of_prior(fit: ServiceFit, model: ServiceModel, turn: FloatArray) -> dict[str, FloatArray]:
     """Return what the numbers change for one deviation of what was known beforehand, by the source of its error.
+
+    ``turn``: from changes at the working point of the vessel file to those at the load of the service, (free, free).
 
     The inertia ahead of the gauge is the vessel file's, by the name that it has in tests: in a history of tests and
     days its error is one. Over the torque of the point it hangs on the gauge too, which a stated inertia does not.
@@ -154,10 +199,10 @@ def _of_prior(fit: ServiceFit, model: ServiceModel, scale: FloatArray) -> dict[s
     changes: dict[str, FloatArray] = {}
     for name, change in fit.of_prior.items():
         if name == TAU_UP.name:
-            changes[TVC] = change * scale * np.sqrt(1.0 - model.gauge_share**2)
-            changes[GAUGE_SCALE] = -change * scale * model.gauge_share
+            changes[TVC] = turn @ change * np.sqrt(1.0 - model.gauge_share**2)
+            changes[GAUGE_SCALE] = -(turn @ change) * model.gauge_share
         else:
-            changes[PRIOR_OF + name] = change * scale
+            changes[PRIOR_OF + name] = turn @ change
     return changes
 
 
@@ -208,7 +253,7 @@ def _quality(fit: ServiceFit) -> Quality:
         fit_ceiling={},
         chi_square=None,
         p_value=None,
-        degrees_of_freedom=count - len(FREE),
+        degrees_of_freedom=count - fit.theta.size,
         starts=1,
         starts_at_optimum=1,
         snr_overall={},
@@ -218,7 +263,10 @@ def _quality(fit: ServiceFit) -> Quality:
     )
 
 
-def _verdict(numbers: Sequence[Estimate], *, used: int, of: int, seconds: float, stable: bool, misfit: str) -> Verdict:
+def _verdict(
+    numbers: Sequence[Estimate], *, used: int, of: int, seconds: float, stable: bool, misfit: str, sails: bool
+) -> Verdict:
+    assumptions = (*_ASSUMED, _UNDERWAY if sails else _AT_THE_QUAY)
     doubts, cautions = {}, []
     for one in numbers:
         share = one.std / abs(one.value) if one.value else np.inf
@@ -255,12 +303,12 @@ def _verdict(numbers: Sequence[Estimate], *, used: int, of: int, seconds: float,
             reason,
             *(trusted_in_words(trusted, doubts) if usable else ()),
             *cautions,
-            *(f"Assumed: {assumption}" for assumption in ASSUMPTIONS),
+            *(f"Assumed: {assumption}" for assumption in assumptions),
         ),
         trusted=trusted if usable else (),
         not_trusted=doubts if usable else {one.name: "no number may be used" for one in numbers},
         loop=None,
-        assumptions=ASSUMPTIONS,
+        assumptions=assumptions,
     )
 
 

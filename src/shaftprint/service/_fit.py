@@ -23,7 +23,7 @@ from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, GAUGE_OMEGA_N, GAU
 from shaftprint.distributions import NORMAL_95, deviations
 from shaftprint.errors import ServiceError
 from shaftprint.service._misfit import Misfit, misfit_of
-from shaftprint.service._model import FREE, ServiceModel
+from shaftprint.service._model import ServiceModel
 from shaftprint.service._progress import Progress, Reached
 from shaftprint.service._score import Score, Simulated, noise_of, scores, simulated
 from shaftprint.time_domain._record import Record
@@ -75,7 +75,7 @@ class ServiceFit:
     """Parameters of a line from its service."""
 
     theta: FloatArray
-    """Values of the free parameters, in the order of ``FREE``, shape (free,)."""
+    """Values of the free parameters, in the order of the model, shape (free,)."""
     covariance: FloatArray
     """Their covariance, shape (free, free): 1.96 deviations hold 95 %, however few segments there are."""
     freedom: FloatArray
@@ -113,6 +113,8 @@ class Sums:
     """Curvature, shape (free, free)."""
     prior: FloatArray
     """That of what is known beforehand, shape (free, free)."""
+    free: tuple[str, ...]
+    """Names of the parameters."""
 
     def step_from(self, theta: FloatArray) -> FloatArray:
         """Return where the likelihood is greatest, as seen from parameters and beside their bounds, shape (free,).
@@ -120,10 +122,10 @@ class Sums:
         What stands at its bound and would go beyond stays there, so that the others do not make up for it.
         ``theta``: the parameters, shape (free,). Raises ServiceError if the segments do not tell all of them.
         """
-        least = np.array([_LEAST.get(name, -np.inf) for name in FREE])
-        moves = np.ones(len(FREE), dtype=np.bool_)
-        for _ in FREE:
-            step = np.zeros(len(FREE))
+        least = _least(self.free)
+        moves = np.ones(len(self.free), dtype=np.bool_)
+        for _ in self.free:
+            step = np.zeros(len(self.free))
             step[moves] = _solved(self.information[np.ix_(moves, moves)], self.slope[moves])
             beyond = moves & (theta <= least) & (step < 0.0)
             if not beyond.any():
@@ -160,11 +162,12 @@ def _solved(information: FloatArray, slope: FloatArray) -> FloatArray:
 
 def sums_of(each: Sequence[Score], model: ServiceModel, theta: FloatArray) -> Sums:
     """Return the sums over segments, with the prior of the vessel file once."""
-    prior = np.diag([1.0 / model.prior_std[name] ** 2 if name in model.prior_std else 0.0 for name in FREE])
+    prior = np.diag([1.0 / model.prior_std[name] ** 2 if name in model.prior_std else 0.0 for name in model.free])
     return Sums(
         slope=np.sum([one.slope for one in each], axis=0) + prior @ (model.theta_known - theta),
         information=np.sum([one.information for one in each], axis=0) + prior,
         prior=prior,
+        free=model.free,
     )
 
 
@@ -273,9 +276,11 @@ def fit_segments(records: Sequence[Record], model: ServiceModel, *, progress: Pr
     misfit = misfit_of(course.runs, course.whitening, model, theta, sums.prior)
     return ServiceFit(
         theta=frozen_float(theta),
-        covariance=frozen_float(with_floor(covariance, theta) + misfit.spread),
+        covariance=frozen_float(with_floor(covariance, theta, model.free) + misfit.spread),
         freedom=frozen_float(freedom),
-        of_prior={name: frozen_float(of_noise[:, FREE.index(name)] / std) for name, std in model.prior_std.items()},
+        of_prior={
+            name: frozen_float(of_noise[:, model.free.index(name)] / std) for name, std in model.prior_std.items()
+        },
         scores=tuple(course.each),
         counts=frozen_bool(course.counts),
         at_start=at_start,
@@ -298,11 +303,11 @@ def _stepped(
     guided: bool,
 ) -> tuple[FloatArray, list[Simulated], list[Score]] | None:
     """Return what lies a step on, halved until it is no worse where the misfit is a guide; None if it never is."""
-    positive = np.array([_LEAST.get(name, 0.0) > 0.0 for name in FREE])
+    positive = np.array([_LEAST.get(name, 0.0) > 0.0 for name in model.free])
     share = float(np.max(np.abs(whole[positive]) / theta[positive], initial=_LONGEST_SHARE))
     step, misfit = whole * (_LONGEST_SHARE / share), _misfit(each, sums, model, theta)
     for _ in range(_HALVINGS):
-        tried = _within(theta + step)
+        tried = np.maximum(theta + step, _least(model.free))
         try:
             new_runs = simulated([one.record for one in runs], model, tried)
         except ServiceError:
@@ -381,9 +386,9 @@ def clustered(each: Sequence[Score], sums: Sums, of_noise: FloatArray) -> tuple[
     return np.asarray(covariance * np.outer(wider, wider)), freedom
 
 
-def with_floor(covariance: FloatArray, theta: FloatArray) -> FloatArray:
+def with_floor(covariance: FloatArray, theta: FloatArray, free: Sequence[str]) -> FloatArray:
     """Return a covariance with what no length of service takes away, shape (free, free)."""
-    floor = [FLOOR.get(name, 0.0) * value + FLOOR_S.get(name, 0.0) for name, value in zip(FREE, theta, strict=True)]
+    floor = [FLOOR.get(name, 0.0) * value + FLOOR_S.get(name, 0.0) for name, value in zip(free, theta, strict=True)]
     return np.asarray(covariance + np.diag(np.square(floor)))
 
 
@@ -393,6 +398,6 @@ def _misfit(each: Sequence[Score], sums: Sums, model: ServiceModel, theta: Float
     return sum(2.0 * one.count * float(np.log(one.level)) for one in each) + float(known @ sums.prior @ known)
 
 
-def _within(theta: FloatArray) -> FloatArray:
-    """Return parameters that can be: what cannot be below zero is not."""
-    return np.maximum(theta, [_LEAST.get(name, -np.inf) for name in FREE])
+def _least(free: Sequence[str]) -> FloatArray:
+    """Return below which no parameter goes, shape (free,)."""
+    return np.array([_LEAST.get(name, -np.inf) for name in free])

@@ -19,6 +19,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import C_SET, GAUGE_K_I, GAUGE_K_P, T_D, T_GAUGE, T_SP, TAU_UP, G
+from shaftprint.catalogue._sailing import TAU_U, A, B, E
 from shaftprint.distributions import f_tail
 from shaftprint.identify.judgement._prior_contradictions import from_prior
 from shaftprint.identify.likelihood._prior import Prior
@@ -54,12 +55,17 @@ _TRENDS = (
     (_GAINS, "hang on the direction of the move", "a smoke limiter, or a turbocharger that comes late", 0.008),
     (_LATENCY, "hangs on the direction of the move", "a rate limit that is another upwards than downwards", 1.5e-3),
 )
+_OTHER_WAY = "a ship at the quay or in shallow water, shafts that do not follow one lever, or a displacement far off"
 # What of the vessel file may be contradicted, and what does that beside a wrong entry.
 _STATED = {
     TAU_UP.name: ("inertia ahead of the gauge", "a rate limit of the demand, or a delay that hangs on the speed"),
     T_GAUGE.name: ("latency of the gauge", "dynamic inflow, or a filter in the channel of the torque"),
     C_SET.name: ("scale of the set point", "a set point that is not what the governor follows"),
     G.name: ("slope of the engine torque with speed", "an engine whose torque is limited at each speed"),
+    A.name: ("slope of the thrust with the advance ratio", _OTHER_WAY),
+    B.name: ("slope of the torque with the advance ratio", _OTHER_WAY),
+    E.name: ("slope of the resistance", _OTHER_WAY),
+    TAU_U.name: ("time of the ship", _OTHER_WAY),
 }
 
 
@@ -152,7 +158,7 @@ def misfit_of(
     """
     levels = np.log([1.0 + float(np.mean(run.record.outputs["n"])) for run in runs])
     swings = np.log([max(float(np.ptp(run.record.drive["n_set"])), _LEAST_SWING) for run in runs])
-    free = len(FREE)
+    free = len(model.free)
     wide = [
         replace(run, slopes=np.concatenate([run.slopes, _trends(run, theta, level, swing), _answers(run)]))
         for run, level, swing in zip(runs, levels - levels.mean(), swings - swings.mean(), strict=True)
@@ -257,6 +263,6 @@ def _answers(run: Simulated) -> FloatArray:
 def _pulls(model: ServiceModel, theta: FloatArray, of_noise: FloatArray) -> Iterator[tuple[str, float]]:
     """Yield the numbers that the vessel file states, with the distance from there in standard deviations."""
     for name, prior_std in model.prior_std.items():
-        place = FREE.index(name)
+        place = model.free.index(name)
         prior = Prior(model.known[name], prior_std)
         yield name, from_prior(float(theta[place]), float(np.sqrt(of_noise[place, place])), prior)

@@ -1,7 +1,7 @@
 """The model that service is compared with: the closed loop at large, with what is known of it beforehand."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,12 +21,16 @@ from shaftprint.catalogue._gauge import (
     TAU_UP,
     G,
 )
-from shaftprint.catalogue._limited import M_MAX, M_MIN, T_AW, limited
+from shaftprint.catalogue._known_propeller import OF_THE_SHIP
+from shaftprint.catalogue._limited import BOLLARD, M_MAX, M_MIN, T_AW, limited
 from shaftprint.catalogue._roles import ShipRole
+from shaftprint.catalogue._sailing import TAU_U, A, B, E
+from shaftprint.catalogue._sailing_at_large import SAILING, V_0, steady_ship, taken
 from shaftprint.errors import ServiceError
 from shaftprint.identify.likelihood._known import stated_by_vessel
 from shaftprint.models._structure import Structure
 from shaftprint.normalisation import Normalisation
+from shaftprint.survey._expected_of_ship import expected_of_ship
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
@@ -39,11 +43,17 @@ FREE = tuple(
     one.name for one in (GAUGE_K_P, GAUGE_K_I, GAUGE_OMEGA_N, GAUGE_ZETA, T_D, T_SP, TAU_DN, TAU_UP, G, C_SET, T_GAUGE)
 )
 """Parameters that service is asked for."""
-BESIDE = (K_Q.name, M_MAX.name, M_MIN.name, T_AW.name)
+FREE_UNDERWAY = (*FREE, *OF_THE_SHIP)
+"""The same of a ship that makes way: slopes of thrust, torque and resistance, and the time of the ship."""
+LIMITS = (M_MAX.name, M_MIN.name, T_AW.name)
+"""Parameters of the limits of the torque."""
+BESIDE = (K_Q.name, *LIMITS)
 """Parameters that each segment has for itself: its load, and the limits where it meets one."""
 OVER_TORQUE = (GAUGE_K_P.name, GAUGE_K_I.name, TAU_DN.name, TAU_UP.name, G.name)
 """Those that go with the torque over the speed of the point at which they are normalised."""
 _SPEED_SLOPE_STD, _SCALE_STD = 0.3, 0.005
+# Slopes of thrust and torque by a series at an assumed wake, and the exponent of a resistance nobody has measured.
+_SLOPE_SHARE, _EXPONENT_SHARE = 0.3, 0.25
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -58,6 +68,10 @@ class ServiceModel:
     """What the vessel file knows, by name."""
     prior_std: Mapping[str, float]
     """Standard deviations of that, by name."""
+    free: tuple[str, ...]
+    """Parameters that service is asked for, by name."""
+    beside: tuple[str, ...]
+    """Parameters that each segment has for itself."""
     engine_speed_rev_s: float
     """Engine speed of the working point [rev/s]."""
     shaft_torque_nm: float
@@ -73,12 +87,12 @@ class ServiceModel:
     @property
     def theta(self) -> FloatArray:
         """Values of the free parameters, shape (free,)."""
-        return np.array([self.values[name] for name in FREE])
+        return np.array([self.values[name] for name in self.free])
 
     @property
     def theta_known(self) -> FloatArray:
         """What is known of the free parameters beforehand, shape (free,); where nothing is, their values."""
-        return np.array([self.known.get(name, self.values[name]) for name in FREE])
+        return np.array([self.known.get(name, self.values[name]) for name in self.free])
 
     def vector(self, theta: FloatArray, load: float) -> FloatArray:
         """Return all parameters under a load over that of the working point, shape (parameters,).
@@ -86,7 +100,7 @@ class ServiceModel:
         A propeller that takes ``l (1 + n)^2`` has the slope ``2 l``; what it takes more at the working point moves the
         limits, which are counted from there.
         """
-        own = {**self.values, **dict(zip(FREE, theta.tolist(), strict=True))}
+        own = {**self.values, **dict(zip(self.free, theta.tolist(), strict=True))}
         own[K_Q.name] = 2.0 * load
         own[M_MAX.name] = max(self.values[M_MAX.name] - (load - 1.0), 0.1)
         own[M_MIN.name] = self.values[M_MIN.name] - (load - 1.0)
@@ -103,9 +117,29 @@ class ServiceModel:
                 speed_rev_s=self.engine_speed_rev_s,
                 torque_nm=self.shaft_torque_nm,
                 tau_dn=self.values[TAU_DN.name],
+                taken=self.taken,
             )
             for one in segments
         ]
+
+    def taken(self, speed: FloatArray) -> FloatArray:
+        """Return what the propeller takes in steady running over that of the working point, shape (speeds,).
+
+        ``speed``: shaft speeds, deviations from the working point, shape (speeds,).
+        """
+        if self.sails:
+            ship = steady_ship(speed, self.values[A.name], self.values[E.name])
+            return np.asarray(taken(speed, ship, self.values[B.name]))
+        return np.asarray((1.0 + speed) ** 2)
+
+    def at(self, theta: FloatArray) -> "ServiceModel":
+        """Return the model at other values of the free parameters, shape (free,)."""
+        return replace(self, values={**self.values, **dict(zip(self.free, theta.tolist(), strict=True))})
+
+    @property
+    def sails(self) -> bool:
+        """Whether the ship makes way."""
+        return B.name in self.free
 
 
 def service_model(vessel: "Vessel", fingerprint: "Fingerprint | None" = None) -> ServiceModel:
@@ -117,8 +151,11 @@ def service_model(vessel: "Vessel", fingerprint: "Fingerprint | None" = None) ->
     _expect_line(vessel)
     speed = vessel.working_point.engine_speed_rpm / SECONDS_PER_MINUTE
     torque = vessel.working_point.driving_torque_nm
-    structure = limited("torque", curve=vessel.machine.full_load_shape(speed))
+    structure = limited(
+        "torque", curve=vessel.machine.full_load_shape(speed), load=SAILING if vessel.is_underway else BOLLARD
+    )
     point = Normalisation(engine_speed_rev_s=speed, gear_ratio=vessel.gearbox.ratio, shaft_torque_nm=torque)
+    free = FREE_UNDERWAY if vessel.is_underway else FREE
     values = {parameter.name: parameter.value for parameter in structure.parameters}
     prior_std = {
         G.name: _SPEED_SLOPE_STD,
@@ -135,20 +172,25 @@ def service_model(vessel: "Vessel", fingerprint: "Fingerprint | None" = None) ->
     downstream = stated_by_vessel(ShipRole.INERTIA_DOWNSTREAM, vessel)
     if downstream is not None:
         values[TAU_DN.name] = point.inertia_time_s(downstream[0])
+    if vessel.is_underway:
+        values |= expected_of_ship(structure, vessel)
+        prior_std |= _of_ship_std(vessel, values)
     known = {name: values[name] for name in prior_std}
     values |= _limits(vessel, speed, torque)
     if fingerprint is not None:
-        values |= _of_fingerprint(fingerprint, point, values)
+        values |= _of_fingerprint(fingerprint, point, values, free)
     return ServiceModel(
         structure=structure,
         values=values,
         known=known,
         prior_std={name: max(std, 1e-4) for name, std in prior_std.items()},
+        free=free,
+        beside=(*BESIDE, V_0.name) if vessel.is_underway else BESIDE,
         engine_speed_rev_s=speed,
         shaft_torque_nm=torque,
         is_of_fingerprint=fingerprint is not None,
         gauge_share=gauge_share,
-        covariance=None if fingerprint is None else _covariance(fingerprint, point),
+        covariance=None if fingerprint is None else _covariance(fingerprint, point, free),
     )
 
 
@@ -158,7 +200,6 @@ def _expect_line(vessel: "Vessel") -> None:
     Raises ServiceError if it is such a one.
     """
     kinds = {
-        "the ship sails free": vessel.is_underway,
         "a motor drives the line": vessel.motor is not None,
         "an electric machine is on the gearbox": vessel.shaft_machine is not None,
         "the pitch is controllable": vessel.pitch is not None,
@@ -172,6 +213,17 @@ def _expect_line(vessel: "Vessel") -> None:
             )
 
 
+def _of_ship_std(vessel: "Vessel", values: Mapping[str, float]) -> dict[str, float]:
+    """Return how far what the vessel file lets be expected of ship and propeller may be off, by name."""
+    hull, speed_m_s = vessel.hull, vessel.working_point.ship_speed_m_s
+    if hull is None or speed_m_s is None:
+        return {}
+    shares = {A.name: _SLOPE_SHARE, B.name: _SLOPE_SHARE, E.name: _EXPONENT_SHARE}
+    return {name: share * abs(values[name]) for name, share in shares.items()} | {
+        TAU_U.name: hull.surge_time_s(speed_m_s)[1]
+    }
+
+
 def _limits(vessel: "Vessel", speed_rev_s: float, torque_nm: float) -> dict[str, float]:
     """Return the limits of the torque at the working point, over the brake torque there."""
     brake = torque_nm / vessel.gearbox.shaft_over_brake
@@ -182,7 +234,9 @@ def _limits(vessel: "Vessel", speed_rev_s: float, torque_nm: float) -> dict[str,
     return {M_MAX.name: highest, **lowest}
 
 
-def _of_fingerprint(fingerprint: "Fingerprint", point: Normalisation, usual: Mapping[str, float]) -> dict[str, float]:
+def _of_fingerprint(
+    fingerprint: "Fingerprint", point: Normalisation, usual: Mapping[str, float], free: Sequence[str]
+) -> dict[str, float]:
     """Return the values of a fingerprint at the working point of the vessel file.
 
     Raises ServiceError if it is of a structure with other numbers.
@@ -195,23 +249,23 @@ def _of_fingerprint(fingerprint: "Fingerprint", point: Normalisation, usual: Map
             f"fingerprint of {tested.vessel}: expected one of a gauge-aware structure such as GAUGE-CLOSED, found "
             f"{fingerprint.structure}, which has no {missing[0]}; leave --fingerprint out or name another."
         )
-    scale = _scale(fingerprint, point)
-    values = {name: own[name] * factor for name, factor in zip(FREE, scale, strict=True) if name in own}
+    scale = _scale(fingerprint, point, free)
+    values = {name: own[name] * factor for name, factor in zip(free, scale, strict=True) if name in own}
     return {name: value for name, value in values.items() if name in usual and name not in (C_SET.name,)}
 
 
-def _scale(fingerprint: "Fingerprint", point: Normalisation) -> FloatArray:
+def _scale(fingerprint: "Fingerprint", point: Normalisation, free: Sequence[str]) -> FloatArray:
     """Return by what each free parameter is multiplied from the point of a test to another, shape (free,)."""
     tested = fingerprint.conditions
     torque = tested.shaft_torque.value / point.shaft_torque_nm
     speed = tested.engine_speed.value / SECONDS_PER_MINUTE / point.engine_speed_rev_s
-    return np.array([torque / speed if name in OVER_TORQUE else 1.0 for name in FREE])
+    return np.array([torque / speed if name in OVER_TORQUE else 1.0 for name in free])
 
 
-def _covariance(fingerprint: "Fingerprint", point: Normalisation) -> FloatArray | None:
+def _covariance(fingerprint: "Fingerprint", point: Normalisation, free: Sequence[str]) -> FloatArray | None:
     """Return the covariance of the free parameters at the working point of the vessel file; None where some are not."""
     own = {one.name: k for k, one in enumerate(fingerprint.parameters)}
-    if fingerprint.covariance is None or any(name not in own for name in FREE):
+    if fingerprint.covariance is None or any(name not in own for name in free):
         return None
-    places, scale = [own[name] for name in FREE], _scale(fingerprint, point)
+    places, scale = [own[name] for name in free], _scale(fingerprint, point, free)
     return np.asarray(np.array(fingerprint.covariance)[np.ix_(places, places)] * np.outer(scale, scale))

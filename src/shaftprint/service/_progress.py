@@ -13,7 +13,7 @@ from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
 from shaftprint.errors import ServiceError
 from shaftprint.files import write_bytes
 from shaftprint.recording._recording import sha256_of
-from shaftprint.service._model import FREE, ServiceModel
+from shaftprint.service._model import ServiceModel
 from shaftprint.service._segment_file import channel_file
 from shaftprint.time_domain._noise_model import NoiseModel
 
@@ -44,6 +44,8 @@ class Progress:
     """The file."""
     key: str
     """What is fitted, as a hash."""
+    free: int
+    """How many parameters are."""
 
     def reached(self, segments: int) -> Reached | None:
         """Return what the file holds; None where there is none, or it is of other segments, values or versions."""
@@ -64,7 +66,7 @@ class Progress:
             )
         except (OSError, ValueError, TypeError, KeyError, OverflowError, RecursionError):
             return None
-        fits = reached.theta.shape == (len(FREE),) and reached.counts.shape == (segments,)
+        fits = reached.theta.shape == (self.free,) and reached.counts.shape == (segments,)
         return reached if fits and reached.noise.covariance.shape == (2, 2) else None
 
     def keep(self, reached: Reached) -> None:
@@ -99,4 +101,4 @@ def progress_of(path: Path, tables: Sequence[Path], model: ServiceModel) -> Prog
         raise ServiceError(f"{error.filename}: expected segments of shaftprint service scan, found none.") from None
     facts = [dict(model.values), dict(model.known), dict(model.prior_std), model.engine_speed_rev_s]
     hashed.update(json.dumps([*facts, model.shaft_torque_nm], sort_keys=True).encode())
-    return Progress(path=path, key=hashed.hexdigest())
+    return Progress(path=path, key=hashed.hexdigest(), free=len(model.free))

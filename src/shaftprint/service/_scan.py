@@ -16,7 +16,7 @@ from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.service._fit import FEWEST_SEGMENTS, sums_of
 from shaftprint.service._gather import Gathered, gather, lever_line
-from shaftprint.service._model import FREE, ServiceModel, service_model
+from shaftprint.service._model import ServiceModel, service_model
 from shaftprint.service._score import Score, noise_of, scores, simulated
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._segment_file import USED, write_segments
@@ -212,7 +212,7 @@ def _judged(
     still = gathered.still
     held = torque_is_held(still, line, speed_rev_s=model.engine_speed_rev_s)
     play = play_of_lever(usable, line)
-    found = [off_the_line(still, line), held, lever_follows_load(still), way_on(usable), play]
+    found = [off_the_line(still, line), held, lever_follows_load(still), way_on(usable, sails=model.sails), play]
     each: dict[int, Score] = {}
     loud: set[int] = set()
     if usable:
@@ -245,10 +245,10 @@ def _accuracy(each: Sequence[Score], model: ServiceModel, *, used: int) -> tuple
         return {}, {}
     sums = sums_of(each, model, model.theta)
     covariance = np.linalg.inv((sums.information - sums.prior) * max(used / len(each), 1.0) + sums.prior)
-    delays = np.array([float(name in (T_D.name, T_SP.name)) for name in FREE])
-    accuracy = {name: float(np.sqrt(covariance[k, k])) for k, name in enumerate(FREE)}
+    delays = np.array([float(name in (T_D.name, T_SP.name)) for name in model.free])
+    accuracy = {name: float(np.sqrt(covariance[k, k])) for k, name in enumerate(model.free)}
     accuracy["delay"] = float(np.sqrt(delays @ covariance @ delays))
-    values = dict(zip(FREE, model.theta.tolist(), strict=True))
+    values = dict(zip(model.free, model.theta.tolist(), strict=True))
     return accuracy, values | {"delay": values[T_D.name] + values[T_SP.name]}
 
 
@@ -288,7 +288,7 @@ def _row(segment: Segment, score: Score | None, line: LeverLine, model: ServiceM
     }
     for name in TOLD:
         # what it would be known to by this segment alone, were all other numbers known
-        information = 0.0 if score is None else float(score.information[FREE.index(name), FREE.index(name)])
+        information = 0.0 if score is None else float(score.information[model.free.index(name), model.free.index(name)])
         row[f"{name}_percent"] = (
             f"{PERCENT / np.sqrt(information) / abs(model.values[name]):.3g}" if information > 0.0 else ""
         )

@@ -1,26 +1,31 @@
 """What segments tell of the parameters: slope ``g`` and curvature ``H`` of the likelihood, one pair a segment.
 
 Each segment is short, begins in steady running and has for itself what no model knows: its load, an offset and a drift
-of either output, and the limits where it meets them. These are projected out. The torque is compared without what the
-propeller takes at the speed of the same moment, ``M - l (1 + n)^2``: the disturbances of the line move speed and torque
+of either output, and the limits where it meets them; underway the speed of the ship where it begins. These are
+projected out. The torque is compared without what the propeller takes at the speed of the same moment, at the quay
+``M - l (1 + n)^2``: the disturbances of the line move speed and torque
 together, the more the faster it turns, and what is left has one colour at all speeds. Its size goes with the load,
 ``(1 + n)^2``, and is a segment's own beyond that.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._sailing import B
+from shaftprint.catalogue._sailing_at_large import taken, taken_slope
 from shaftprint.errors import ServiceError
-from shaftprint.service._model import BESIDE, FREE, ServiceModel
+from shaftprint.service._model import LIMITS, ServiceModel
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise
 from shaftprint.time_domain._nuisance import drift_columns, orthonormal, without
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._simulator import ExactDelays, on_record
 from shaftprint.time_domain._whitening import Whitening
 
+COMPARED = ("n", "M_s")
+"""Outputs that are compared."""
 MEMORY_S = 2.0
 """Longest memory of the noise [s]."""
 # What a limit changes in a segment, over its noise, from which on it counts as met.
@@ -73,7 +78,7 @@ def simulated(records: Sequence[Record], model: ServiceModel, theta: FloatArray)
         if run is None:
             raise ServiceError(
                 f"{record.name}: the simulation of {model.structure.name} runs away at "
-                + ", ".join(f"{name} = {value:.4g}" for name, value in zip(FREE, theta, strict=True))
+                + ", ".join(f"{name} = {value:.4g}" for name, value in zip(model.free, theta, strict=True))
                 + "; begin from a fingerprint of this line (--fingerprint)."
             )
         runs.append(run)
@@ -82,29 +87,43 @@ def simulated(records: Sequence[Record], model: ServiceModel, theta: FloatArray)
 
 def _simulated(record: Record, model: ServiceModel, theta: FloatArray) -> Simulated | None:
     structure = model.structure
-    run = on_record(ExactDelays(), structure, model.vector(theta, record.load), record, (*FREE, *BESIDE))
+    run = on_record(ExactDelays(), structure, model.vector(theta, record.load), record, (*model.free, *model.beside))
     if run is None:
         return None
-    names = tuple(structure.outputs)
-    n, torque = names.index("n"), names.index("M_s")
-    measured = np.stack([record.outputs[name] for name in names], axis=1)
-    load, speed = record.load, run[0, :, n]
-    own = run[1:].copy()
-    own[:, :, torque] -= 2.0 * load * (1.0 + speed) * own[:, :, n]
-    residuals = measured - run[0]
-    residuals[:, torque] -= load * ((1.0 + measured[:, n]) ** 2 - (1.0 + speed) ** 2)
-    weight = 1.0 / (1.0 + _smooth(measured[:, n], record.rate_hz)) ** 2
-    free = len(FREE)
-    met = own[free:][np.abs(own[free:]).max(axis=(1, 2)) > _MET]
-    drifts = drift_columns(record, len(names), 1, anew_after_s=np.inf)
+    # the speed of the ship is simulated and not measured
+    at = dict(zip(structure.outputs, run[0].T, strict=True))
+    own = run[1:][:, :, [tuple(structure.outputs).index(name) for name in COMPARED]].copy()
+    measured = np.stack([record.outputs[name] for name in COMPARED], axis=1)
+    more, rise = _taken_more(model, theta, measured[:, 0], at)
+    own[:, :, 1] -= record.load * rise * own[:, :, 0]
+    residuals = measured - np.stack([at[name] for name in COMPARED], axis=1)
+    residuals[:, 1] -= record.load * more
+    weight = 1.0 / (1.0 + _smooth(measured[:, 0], record.rate_hz)) ** 2
+    free = len(model.free)
+    acts = np.abs(own[free:]).max(axis=(1, 2)) > _MET
+    drifts = drift_columns(record, len(COMPARED), 1, anew_after_s=np.inf)
     return Simulated(
         record=record,
         weight=weight,
         residuals=residuals * weight[:, None],
         slopes=own[:free] * weight[:, None],
-        beside=np.concatenate([drifts, met]) * weight[:, None],
-        meets_limit=len(met) > 1,
+        beside=np.concatenate([drifts, own[free:][acts]]) * weight[:, None],
+        meets_limit=any(acts[model.beside.index(name)] for name in LIMITS),
     )
+
+
+def _taken_more(
+    model: ServiceModel, theta: FloatArray, measured: FloatArray, at: Mapping[str, FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Return what the propeller takes more at the measured shaft speed than at the simulated, and its slope there.
+
+    ``measured``: shape (samples,). ``at``: simulated outputs. Both over the torque of the working point.
+    """
+    speed = at["n"]
+    if not model.sails:
+        return (1.0 + measured) ** 2 - (1.0 + speed) ** 2, 2.0 * (1.0 + speed)
+    ship, slope = at["v"], float(theta[model.free.index(B.name)])
+    return taken(measured, ship, slope) - taken(speed, ship, slope), taken_slope(speed, ship, slope)
 
 
 def _smooth(values: FloatArray, rate_hz: float) -> FloatArray:

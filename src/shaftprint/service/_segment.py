@@ -1,5 +1,6 @@
 """A segment of service: one move of the lever with what speed and torque did around it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,17 +70,26 @@ class Segment:
         """Length of what is compared [s]."""
         return self.speed_rev_s.size * self.every / self.rate_hz
 
-    def record(self, line: LeverLine, *, speed_rev_s: float, torque_nm: float, tau_dn: float) -> Record:
+    def record(
+        self,
+        line: LeverLine,
+        *,
+        speed_rev_s: float,
+        torque_nm: float,
+        tau_dn: float,
+        taken: Callable[[FloatArray], FloatArray],
+    ) -> Record:
         """Return it as a record of deviations, its load without the torque that accelerates the propeller.
 
         ``line``: what the lever asks for. ``speed_rev_s``, ``torque_nm``: engine speed [rev/s] and shaft torque [N m]
-        of the working point. ``tau_dn``: inertia time behind the gauge [s].
+        of the working point. ``tau_dn``: inertia time behind the gauge [s]. ``taken``: from shaft speeds to what the
+        propeller takes in steady running, deviations and torques over those of the working point.
         """
         decimator = Decimator(every=self.every)
         drive = line.speed_rev_s(self.lever_v) / speed_rev_s - 1.0
         n, torque = self.speed_rev_s / speed_rev_s - 1.0, self.torque_nm / torque_nm - 1.0
         gained = tau_dn * (n[-1] - n[0]) / self.seconds
-        load = (1.0 + float(np.mean(torque)) - float(gained)) / float(np.mean((1.0 + n) ** 2))
+        load = (1.0 + float(np.mean(torque)) - float(gained)) / float(np.mean(taken(n)))
         return Record(
             name=self.name,
             rate_hz=self.rate_hz / self.every,

@@ -9,18 +9,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arguments import refusing_none
+from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import T_D, T_SP
 from shaftprint.errors import ServiceError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary
 from shaftprint.service._day_folder import SCORES, SCORES_AGAINST, VALUES, VALUES_AGAINST, scores_text, theta_text
-from shaftprint.service._fingerprint import fingerprint_of_service
+from shaftprint.service._fingerprint import Load, fingerprint_of_service
 from shaftprint.service._fit import ServiceFit, fit_segments
-from shaftprint.service._model import FREE, ServiceModel, service_model
+from shaftprint.service._model import ServiceModel, service_model
 from shaftprint.service._progress import progress_of
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._segment_file import read_segments
 from shaftprint.service._start import begun
+from shaftprint.time_domain._record import Record
 
 if TYPE_CHECKING:
     from shaftprint.campaign._trial_conditions import TrialConditions
@@ -29,6 +31,8 @@ if TYPE_CHECKING:
 
 LATEST_T_SP_S, EARLIEST_S = 0.5, -0.02
 """Latency of the set point, and delay of all, beyond which the lever is not on the clock of the others [s]."""
+# Change by which slopes are taken, over the value.
+_STEP = 1e-4
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -64,11 +68,11 @@ class ServiceDay(Shown):
         counts, scores = (
             (self.fit.counts_at_start, self.fit.at_start) if at_start else (self.fit.counts, self.fit.scores)
         )
-        return scores_text([one for one, does in zip(self.given, counts, strict=True) if does], scores)
+        return scores_text([one for one, does in zip(self.given, counts, strict=True) if does], scores, self.model.free)
 
     def theta_text(self, *, at_start: bool = False) -> str:
         """Return at which values the slopes were taken, as JSON."""
-        return theta_text(self.model.theta if at_start else self.fit.theta)
+        return theta_text(self.model.theta if at_start else self.fit.theta, self.model.free)
 
     def files(self, *, against: bool) -> dict[str, str]:
         """Return what goes beside the fingerprint in the folder of a day, by the name of the file.
@@ -132,7 +136,7 @@ def fit_service(
     kept = None if progress is None else progress_of(Path(progress), paths, model)
     fit = fit_segments(records, model, progress=kept)
     used = tuple(one for one, counts in zip(given, fit.counts, strict=True) if counts)
-    _expect_one_clock(fit, paths[0])
+    _expect_one_clock(fit, model.free, paths[0])
     made = fingerprint_of_service(
         fit,
         model,
@@ -140,7 +144,12 @@ def fit_service(
         line=days[0][1],
         segments=used,
         of=sum(len(segments) for segments, *_ in days),
-        load=_mean_load([load for _, _, load, _ in days]),
+        load=_load_of(
+            fit,
+            model,
+            [one for one, counts in zip(records, fit.counts, strict=True) if counts],
+            [load for _, _, load, _ in days],
+        ),
         tables=paths,
         now=now,
         tested_at=tested_at or days[0][3],
@@ -184,6 +193,30 @@ def _moment(text: str, path: Path) -> datetime:
         ) from None
 
 
+def _load_of(
+    fit: ServiceFit, model: ServiceModel, records: Sequence[Record], loads: Sequence[tuple[float, float]]
+) -> Load:
+    """Return the mean load; underway without what the ship's speed does to it, by the fit.
+
+    ``records``: the segments that count. ``loads``: those of the still stretches of each day, with their standard
+    deviations.
+    """
+    nothing = np.zeros(fit.theta.size)
+    if not model.sails:
+        value, std = _mean_load(loads)
+        return Load(value=value, std=std, slope=nothing)
+    speeds = np.array([float(np.mean(record.outputs["n"])) for record in records])
+    shown = np.array([record.load for record in records]) * model.taken(speeds)
+
+    def found(theta: FloatArray) -> FloatArray:
+        return np.asarray(shown / model.at(theta).taken(speeds))
+
+    steps = np.diag(_STEP * np.maximum(np.abs(fit.theta), 1e-2))
+    slope = [float(np.mean(found(fit.theta + one) - found(fit.theta - one))) / (2.0 * one.sum()) for one in steps]
+    each = found(fit.theta)
+    return Load(value=float(each.mean()), std=float(each.std(ddof=1) / np.sqrt(each.size)), slope=np.array(slope))
+
+
 def _mean_load(loads: Sequence[tuple[float, float]]) -> tuple[float, float]:
     """Return the mean load of several days and its standard deviation, that of days that differ included."""
     if len(loads) == 1:
@@ -195,15 +228,15 @@ def _mean_load(loads: Sequence[tuple[float, float]]) -> tuple[float, float]:
     return mean, float(np.sqrt(max(within, np.var(values, ddof=1) / values.size)))
 
 
-def _expect_one_clock(fit: ServiceFit, path: Path) -> None:
+def _expect_one_clock(fit: ServiceFit, free: Sequence[str], path: Path) -> None:
     """Refuse a speed that comes before the lever, or long after it.
 
     What the delay of the loop and that of the set point have of it a log hardly tells; their sum it does. Raises
     ServiceError if it is so.
     """
-    delays = np.array([float(name in (T_D.name, T_SP.name)) for name in FREE])
+    delays = np.array([float(name in (T_D.name, T_SP.name)) for name in free])
     whole, std = float(delays @ fit.theta), float(np.sqrt(delays @ fit.covariance @ delays))
-    if EARLIEST_S - 3.0 * std <= whole and fit.theta[FREE.index(T_SP.name)] <= LATEST_T_SP_S:
+    if EARLIEST_S - 3.0 * std <= whole and fit.theta[free.index(T_SP.name)] <= LATEST_T_SP_S:
         return
     raise ServiceError(
         f"{path}: expected a speed that follows the lever within {LATEST_T_SP_S:g} s, found a delay of "

@@ -18,7 +18,7 @@ from shaftprint.models._combination import Combination
 from shaftprint.models._role import Role
 from shaftprint.models._structure import Structure
 from shaftprint.normalisation import Normalisation
-from shaftprint.service._model import FREE, ServiceModel
+from shaftprint.service._model import ServiceModel
 
 if TYPE_CHECKING:
     from shaftprint.vessel._vessel import Vessel
@@ -51,27 +51,27 @@ class ShipNumber:
     """Value and standard deviation by the vessel file."""
 
 
-def parameter_numbers(structure: Structure, theta: FloatArray) -> list[ShipNumber]:
-    """Return the free parameters themselves."""
+def parameter_numbers(structure: Structure, theta: FloatArray, free: Sequence[str]) -> list[ShipNumber]:
+    """Return the free parameters themselves, whose names are ``free``."""
     about = {parameter.name: parameter for parameter in structure.parameters}
     return [
         ShipNumber(
             name=name,
             unit=about[name].unit,
             value=float(theta[k]),
-            slope=np.eye(len(FREE))[k],
+            slope=np.eye(len(free))[k],
             meaning=about[name].meaning,
             role=about[name].role,
         )
-        for k, name in enumerate(FREE)
+        for k, name in enumerate(free)
     ]
 
 
-def _combined(one: Combination, theta: FloatArray, held: Mapping[str, float]) -> ShipNumber:
+def _combined(one: Combination, theta: FloatArray, held: Mapping[str, float], free: Sequence[str]) -> ShipNumber:
     """Return a combination of the parameters, its slopes from differences."""
     steps = _STEP * np.maximum(np.abs(theta), 1e-2)
     table = np.concatenate([theta[None], theta + np.diag(steps), theta - np.diag(steps)])
-    sets = {name: table[:, k] for k, name in enumerate(FREE)}
+    sets = {name: table[:, k] for k, name in enumerate(free)}
     sets |= {name: np.full(len(table), float(value)) for name, value in held.items()}
     values = np.broadcast_to(one.of(sets), len(table))
     return ShipNumber(
@@ -84,15 +84,19 @@ def _combined(one: Combination, theta: FloatArray, held: Mapping[str, float]) ->
     )
 
 
-def combination_numbers(structure: Structure, theta: FloatArray, held: Mapping[str, float]) -> list[ShipNumber]:
+def combination_numbers(
+    structure: Structure, theta: FloatArray, held: Mapping[str, float], free: Sequence[str]
+) -> list[ShipNumber]:
     """Return the combinations of the structure."""
-    return [_combined(one, theta, held) for one in structure.combinations]
+    return [_combined(one, theta, held, free) for one in structure.combinations]
 
 
-def margin_numbers_of(structure: Structure, theta: FloatArray, held: Mapping[str, float]) -> list[ShipNumber]:
+def margin_numbers_of(
+    structure: Structure, theta: FloatArray, held: Mapping[str, float], free: Sequence[str]
+) -> list[ShipNumber]:
     """Return the stability margins."""
-    vector = structure.vector(dict(zip(FREE, theta.tolist(), strict=True)) | dict(held))
-    numbers = (_combined(one, theta, held) for one in margin_numbers(structure, vector))
+    vector = structure.vector(dict(zip(free, theta.tolist(), strict=True)) | dict(held))
+    numbers = (_combined(one, theta, held, free) for one in margin_numbers(structure, vector))
     return [one for one in numbers if np.all(np.isfinite(one.slope))]
 
 
@@ -104,11 +108,17 @@ def physical_numbers_of(
     *,
     torque_nm: float,
     load_std: float,
+    load_slope: FloatArray,
+    turn: FloatArray,
 ) -> list[ShipNumber]:
     """Return inertias, governor actions and the torque coefficient.
 
     The numbers are normalised with the mean load, which cancels where a torque is what is found.
+
+    ``load_slope``: share by which the load goes with each number at the working point of the vessel file, (free,).
+    ``turn``: from changes of the numbers there to those with the load, shape (free, free).
     """
+    back = np.linalg.inv(turn)
     point = Normalisation(
         engine_speed_rev_s=model.engine_speed_rev_s, gear_ratio=vessel.gearbox.ratio, shaft_torque_nm=torque_nm
     )
@@ -116,16 +126,16 @@ def physical_numbers_of(
     numbers = []
     for role in ROLES.values():
         name, form = structure.named_as(role), role.physical
-        if name not in FREE or form is None:
+        if name not in model.free or form is None:
             continue
-        k = FREE.index(name)
+        k = model.free.index(name)
         value = form.scale(point) * float(theta[k])
         numbers.append(
             ShipNumber(
                 name=form.name,
                 unit=form.unit,
                 value=value,
-                slope=form.scale(point) * np.eye(len(FREE))[k],
+                slope=form.scale(point) * turn[k, k] * back[k],
                 meaning=form.meaning,
                 role=role,
                 direct={GAUGE_SCALE: value * sensor.scale_std},
@@ -147,12 +157,13 @@ def physical_numbers_of(
             name="K_Q",
             unit="-",
             value=coefficient,
-            slope=np.zeros(len(FREE)),
+            slope=coefficient * load_slope @ back,
             meaning="torque coefficient of the propeller, mean of the service",
             role=ShipRole.TORQUE,
             direct=direct,
+            # the vessel file states that of zero advance
             expected=None
-            if vessel.torque_coefficient is None
+            if vessel.torque_coefficient is None or model.sails
             else (vessel.torque_coefficient, vessel.torque_coefficient_std or np.nan),
         )
     )

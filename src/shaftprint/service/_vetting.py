@@ -23,7 +23,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import T_SP
 from shaftprint.distributions import deviations
 from shaftprint.service._gather import MEAN_S, StillMeans
-from shaftprint.service._model import FREE, ServiceModel
+from shaftprint.service._model import ServiceModel
 from shaftprint.service._score import Simulated
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.time_domain._decimator import Decimator
@@ -138,11 +138,11 @@ def _left_open_s(runs: Sequence[Simulated], model: ServiceModel) -> float:
     if model.covariance is None:
         return 0.0
     columns = [
-        (run.slopes[:, :, 0] - run.slopes[:, :, 0].mean(axis=1, keepdims=True)).reshape(len(FREE), -1)
+        (run.slopes[:, :, 0] - run.slopes[:, :, 0].mean(axis=1, keepdims=True)).reshape(len(model.free), -1)
         / float(run.residuals[:, 0].std())
         for run in runs
     ]
-    late = FREE.index(T_SP.name)
+    late = model.free.index(T_SP.name)
     moved = sum(one @ one[late] for one in columns)
     towards = moved / moved[late]
     return float(np.sqrt(max(towards @ model.covariance @ towards, 0.0)))
@@ -297,10 +297,10 @@ def play_of_lever(segments: Sequence[Segment], line: LeverLine) -> Found:
     return Found(what=what, value=play, unit="rpm", refused=refused)
 
 
-def way_on(segments: Sequence[Segment]) -> Found:
+def way_on(segments: Sequence[Segment], *, sails: bool = False) -> Found:
     """Return how much the load rises with the speed across moves: nothing at the quay, more with way on.
 
-    ``segments``: usable segments.
+    ``segments``: usable segments. ``sails``: whether the vessel file says that the ship makes way.
     """
     what = "load that rises with the speed across a move"
     rows = []
@@ -323,11 +323,17 @@ def way_on(segments: Sequence[Segment]) -> Found:
     moves, loads_moved = np.array(rows).T
     slope, std = _through_zero(moves, loads_moved)
     refused = ""
-    if abs(slope) > _WAY and abs(slope) > _WAY_STD * std:
+    if sails and slope + _WAY_STD * std < _WAY:
+        refused = (
+            f"torque over the square of the speed hardly changes with the moves of the lever (exponent {slope:+.2f} "
+            f"+/- {std:.2f} beyond 2): the ship makes no way, as at the quay, and the vessel file is that of a ship "
+            "underway; use hours underway, or the vessel file of the quay."
+        )
+    elif not sails and abs(slope) > _WAY and abs(slope) > _WAY_STD * std:
         refused = (
             f"torque over the square of the speed changes with each move of the lever (exponent {slope:+.2f} +/- "
             f"{std:.2f} beyond 2): the ship has way on, or the propeller another pitch, and the model is that of the "
-            "quay; use hours at the quay, or make a test underway."
+            "quay; use hours at the quay, or a vessel file with ship_speed_m_s for hours underway."
         )
     return Found(what=what, value=slope, unit="-", refused=refused)
 

@@ -30,7 +30,7 @@ from shaftprint.drift._words import ALIKE
 from shaftprint.errors import ServiceError
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.service._day_folder import Day, read_day
-from shaftprint.service._model import FREE, OVER_TORQUE, ServiceModel, service_model
+from shaftprint.service._model import OVER_TORQUE, ServiceModel, service_model
 
 if TYPE_CHECKING:
     from shaftprint.vessel._vessel import Vessel
@@ -112,16 +112,19 @@ def _words(one: Along) -> str:
 
 def directions(model: ServiceModel) -> dict[Cause, FloatArray]:
     """Return the causes that service can see, and how the parameters move for one unit of each, shape (free,)."""
-    roles = {one.name: one.role for one in model.structure.parameters if one.name in FREE}
+    roles = {one.name: one.role for one in model.structure.parameters if one.name in model.free}
     found: dict[Cause, FloatArray] = {}
     theta = model.theta
     for cause in CAUSES:
         names = by_role(cause, roles)
         if names:
             found[cause] = np.array(
-                [(value if cause.is_share else 1.0) * (name in names) for name, value in zip(FREE, theta, strict=True)]
+                [
+                    (value if cause.is_share else 1.0) * (name in names)
+                    for name, value in zip(model.free, theta, strict=True)
+                ]
             )
-    found[GAUGE] = np.array([value * (name in OVER_TORQUE) for name, value in zip(FREE, theta, strict=True)])
+    found[GAUGE] = np.array([value * (name in OVER_TORQUE) for name, value in zip(model.free, theta, strict=True)])
     return found
 
 
@@ -158,8 +161,8 @@ def watch_folders(
     model = service_model(vessel, fingerprint)
     if model.covariance is None:
         raise ServiceError(
-            f"--against: expected a fingerprint of {', '.join(FREE)} with their covariance, as service fit writes it, "
-            f"found one of {fingerprint.structure} without."
+            f"--against: expected a fingerprint of {', '.join(model.free)} with their covariance, as service fit "
+            f"writes it, found one of {fingerprint.structure} without."
         )
     found = watch_days(days, model, model.covariance, a_year=a_year)
     return replace(found, propeller=_propeller(days, fingerprint))
@@ -302,8 +305,8 @@ class _Series:
     @classmethod
     def of(cls, days: Sequence[Day], model: ServiceModel, covariance: FloatArray, moved: FloatArray) -> "_Series":
         """Return days with the scale of the lever projected out of each."""
-        scale = FREE.index(C_SET.name)
-        rest = np.arange(len(FREE)) != scale
+        scale = model.free.index(C_SET.name)
+        rest = np.arange(len(model.free)) != scale
         sums = []
         for day in days:
             total = day.information.sum(axis=0)
@@ -312,7 +315,7 @@ class _Series:
             own = day.information - share[None, :, None] * day.information[:, scale][:, None, :]
             information = (total - np.outer(share, total[scale]))[np.ix_(rest, rest)]
             sums.append(_Sums.of(slopes, own[:, rest][:, :, rest], information))
-        times = [FREE.index(name) for name in (T_D.name, T_SP.name)]
+        times = [model.free.index(name) for name in (T_D.name, T_SP.name)]
         is_time = np.array([bool(one[times].any()) and np.count_nonzero(one) == 1 for one in moved])
         return cls(
             days=sums,

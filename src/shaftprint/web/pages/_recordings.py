@@ -34,6 +34,7 @@ VESSELS: Final = (
     "stan-tug-1205-astern",
     "stan-tug-1205-ecu",
     "stan-tug-1205-service",
+    "stan-tug-1205-service-underway",
     "stan-tug-1205-starboard",
     "stan-tug-1205-underway",
 )

@@ -1,0 +1,95 @@
+"""A simulated ship that sails while it works: its logs tell line and ship, and a file of the quay is not theirs."""
+
+from datetime import UTC, datetime
+
+import numpy as np
+import pytest
+from tests.tug.busy_crew import BUSY
+
+from shaftprint.errors import ServiceError
+from shaftprint.fingerprint import read_fingerprint, write_fingerprint
+from shaftprint.service import fit_service, scan
+from shaftprint.service._day_folder import read_day
+from shaftprint.service._model import service_model
+from shaftprint.service._watch import watch_days
+from shaftprint.tug import sail_service
+from shaftprint.vessel import load_vessel
+
+NOW = datetime(2026, 11, 28, 12, tzinfo=UTC)
+OF_THE_SHIP = ("a", "b", "e", "tau_u")
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def vessel():
+    return load_vessel("stan-tug-1205-service-underway")
+
+
+@pytest.fixture(scope="module")
+def worked(vessel, tmp_path_factory):
+    """Return the logs of half an hour of a busy crew underway, and the truth."""
+    folder = tmp_path_factory.mktemp("underway")
+    return sail_service(vessel, folder, hours=0.5, seed=6, habits=BUSY)
+
+
+@pytest.fixture(scope="module")
+def day(worked, vessel, tmp_path_factory):
+    """Return what a fit finds in them."""
+    files, _ = worked
+    table = tmp_path_factory.mktemp("scanned") / "segments.csv"
+    found = scan(files, vessel)
+    assert not found.refused
+    found.write(table)
+    return table, fit_service(table, vessel, now=NOW)
+
+
+def test_service_underway_tells_line_and_ship(worked, day, tmp_path):
+    _, truth = worked
+    _, made = day
+    found = made.fingerprint
+    assert found.structure == "FREE-CLOSED"
+    assert found.verdict.trustworthy
+    for quantity in found.parameters:
+        true = truth.normalised.get(quantity.name, {"c_set": 1.0, "t_gauge": 0.0}.get(quantity.name))
+        assert abs(quantity.value - true) < 4.0 * quantity.std, quantity.name
+    # what the file knows of the ship beforehand is a third of these slopes; half an hour halves it
+    b = found.quantity("b")
+    assert b.std < 0.2 * abs(b.value)
+    assert found.quantity("tau_dn").std < 0.02 * found.quantity("tau_dn").value
+    # the torque is that at the speed of the file, where the ship's crew hardly ever goes
+    torque = found.conditions.shaft_torque
+    assert abs(torque.value - truth.shaft_torque_nm) < 4.0 * torque.std
+    assert torque.std < 0.02 * torque.value
+    assert any("makes way" in one for one in found.verdict.assumptions)
+    write_fingerprint(found, tmp_path / "fingerprint.json")
+    assert read_fingerprint(tmp_path / "fingerprint.json") == found
+
+
+def test_a_day_underway_is_held_against_another(day, vessel, tmp_path):
+    table, first = day
+    again = fit_service(table, vessel, fingerprint=first.fingerprint, now=NOW)
+    for name, text in again.files(against=True).items():
+        (tmp_path / name).write_text(text)
+    write_fingerprint(again.fingerprint, tmp_path / "fingerprint.json")
+    kept = read_day(tmp_path)
+    assert kept.slopes.shape == (len(again.segments), 15)
+    model = service_model(vessel, first.fingerprint)
+    np.testing.assert_allclose(kept.theta, model.theta)
+    # the same day again: along no cause is there a change
+    watched = watch_days([kept], model, model.covariance)
+    assert watched.first is None
+
+
+def test_the_file_of_the_quay_is_refused_for_logs_underway_and_the_other_way_round(worked, vessel, tmp_path):
+    quay = load_vessel("stan-tug-1205-service")
+    files, _ = worked
+    assert "the ship has way on" in scan(files, quay).refused
+    lying, _ = sail_service(quay, tmp_path / "quay", hours=0.5, seed=6, habits=BUSY)
+    refused = scan(lying, vessel).refused
+    assert "the ship makes no way, as at the quay" in refused
+
+
+def test_what_service_underway_cannot_be_compared_with_is_refused(vessel):
+    astern = vessel.model_copy(update={"working_point": load_vessel("stan-tug-1205-astern").working_point})
+    with pytest.raises(ServiceError, match="found that the shaft turns astern"):
+        service_model(astern)
