@@ -1,5 +1,6 @@
 """A simulated ship that sails while it works: its logs tell line and ship, and a file of the quay is not theirs."""
 
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import numpy as np
@@ -13,6 +14,7 @@ from shaftprint.service._day_folder import read_day
 from shaftprint.service._model import service_model
 from shaftprint.service._watch import watch_days
 from shaftprint.tug import sail_service
+from shaftprint.tug._like_stan_tug import like_stan_tug_1205
 from shaftprint.vessel import load_vessel
 
 NOW = datetime(2026, 11, 28, 12, tzinfo=UTC)
@@ -87,6 +89,27 @@ def test_the_file_of_the_quay_is_refused_for_logs_underway_and_the_other_way_rou
     lying, _ = sail_service(quay, tmp_path / "quay", hours=0.5, seed=6, habits=BUSY)
     refused = scan(lying, vessel).refused
     assert "the ship makes no way, as at the quay" in refused
+
+
+def test_of_a_day_at_the_quay_and_underway_one_of_both_counts(vessel, tmp_path):
+    """An hour underway in three gave an inertia 4 deviations off, trusted: the load rises by less than a log shows."""
+    quay = load_vessel("stan-tug-1205-service")
+    lying, sailing = like_stan_tug_1205(quay), like_stan_tug_1205(vessel)
+    # one lever for both
+    line = {one: getattr(lying, one) for one in ("set_point_intercept_rpm", "set_point_slope_rpm_per_v")}
+    at_quay, truth = sail_service(quay, tmp_path / "quay", hours=0.5, seed=6, habits=BUSY, tug=lying)
+    under, _ = sail_service(vessel, tmp_path / "under", hours=0.4, seed=7, habits=BUSY, tug=replace(sailing, **line))
+    found = scan([*at_quay, *under], quay)
+    assert not found.refused
+    of_quay = {str(path) for path in at_quay}
+    assert {one.log for one in found.used} == of_quay
+    reasons = [one.reason for one in found.segments if "less torque than in most moves" in one.reason]
+    assert len(reasons) > 15
+    found.write(tmp_path / "segments.csv")
+    made = fit_service(tmp_path / "segments.csv", quay, now=NOW).fingerprint
+    inertia, torque = made.quantity("tau_dn"), made.conditions.shaft_torque
+    assert abs(inertia.value - truth.normalised["tau_dn"]) < 3.0 * inertia.std
+    assert abs(torque.value / truth.shaft_torque_nm - 1.0) < 0.01
 
 
 def test_what_service_underway_cannot_be_compared_with_is_refused(vessel):

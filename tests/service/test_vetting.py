@@ -10,11 +10,13 @@ from shaftprint.service._gather import StillMeans, lever_line
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._vetting import (
     beside_full_load,
+    is_other,
     lever_follows_load,
     off_the_line,
     play_of_lever,
     speed_is_off,
     torque_is_held,
+    usual_load,
     way_on,
 )
 from shaftprint.vessel import load_vessel
@@ -81,6 +83,19 @@ def test_way_on_shows_in_the_torque_across_moves(exponent, is_refused):
     found = way_on([segment(*rng.uniform(12.0, 26.0, 2), exponent, rng) for _ in range(40)])
     assert found.value == pytest.approx(exponent - 2.0, abs=0.05)
     assert bool(found.refused) == is_refused
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.8])
+def test_loads_of_two_waters_are_told_apart_and_one_water_that_wanders_stays_whole(share):
+    rng = np.random.default_rng(4)
+    under = rng.random(200) < share
+    loads = np.where(under, 0.78, 1.0) * (1.0 + 0.025 * rng.standard_normal(200))
+    usual = usual_load(loads)
+    assert usual == pytest.approx(0.78 if share > 0.5 else 1.0, rel=0.01) or share == 0.5
+    other = is_other(loads, usual)
+    assert np.array_equal(other, under != (usual < 0.9))
+    wandering = 1.0 + 0.06 * np.sin(np.linspace(0.0, 9.0, 200))
+    assert not is_other(wandering, usual_load(wandering)).any()
 
 
 @pytest.mark.parametrize(("exponent", "is_refused"), [(2.0, True), (2.42, False)])

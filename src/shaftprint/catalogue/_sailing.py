@@ -19,6 +19,7 @@ from shaftprint.catalogue._gauge import (
     speed_sensor,
     torque_sensor,
 )
+from shaftprint.catalogue._gauge_combinations import RESET_TIME, TOTAL_DELAY
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingSpeed, SailingTorque
 from shaftprint.models._blocks import FirstOrderLag, Gain
@@ -56,6 +57,9 @@ T_LOG = Parameter(
     held=True,
     role=ShipRole.LOG_LATENCY,
 )
+
+# what a closed loop tells better than its delays and gains, on any water
+_OF_THE_LOOP = (TOTAL_DELAY, RESET_TIME)
 
 
 def free_core() -> Structure:
@@ -98,7 +102,7 @@ def free_closed() -> Structure:
         title="closed loop of a free-sailing ship",
         input="n_set",
         outputs={"n": speed * speed_sensor(), "M_s": torque * torque_sensor()},
-        combinations=_combinations(),
+        combinations=(*_OF_THE_LOOP, *_combinations()),
     )
 
 
@@ -113,7 +117,7 @@ def free_log() -> Structure:
         title="closed loop of a free-sailing ship with its speed logged",
         input="n_set",
         outputs={"n": speed * speed_sensor(), "M_s": torque * torque_sensor(), "v_s": ship * Delay(T_LOG)},
-        combinations=(*_combinations(), *_ship_combinations()),
+        combinations=(*_OF_THE_LOOP, *_combinations(), *_ship_combinations()),
     )
 
 
@@ -125,7 +129,7 @@ def sailing_with_rack() -> Structure:
         title="closed loop of a free-sailing ship with its fuel rack",
         input="n_set",
         outputs={"n": speed * speed_sensor(), "M_s": torque * torque_sensor(), "X": rack},
-        combinations=_combinations(),
+        combinations=(*_OF_THE_LOOP, *_combinations()),
     )
 
 
@@ -163,6 +167,7 @@ def free_pitch() -> Structure:
             },
         },
         combinations=(
+            *_OF_THE_LOOP,
             *_combinations(),
             *_ship_combinations(),
             Combination(

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -111,16 +111,20 @@ class ServiceModel:
 
         ``segments``: usable ones. ``line``: what the lever asks for.
         """
-        return [
-            one.record(
-                line,
-                speed_rev_s=self.engine_speed_rev_s,
-                torque_nm=self.shaft_torque_nm,
-                tau_dn=self.values[TAU_DN.name],
-                taken=self.taken,
-            )
-            for one in segments
-        ]
+        return [one.record(line, **self._point) for one in segments]
+
+    def loads(self, segments: "Sequence[Segment]") -> FloatArray:
+        """Return the torque of the propeller over what it takes at that speed, shape (segments,)."""
+        return np.array([one.load(**self._point) for one in segments])
+
+    @property
+    def _point(self) -> dict[str, Any]:
+        return {
+            "speed_rev_s": self.engine_speed_rev_s,
+            "torque_nm": self.shaft_torque_nm,
+            "tau_dn": self.values[TAU_DN.name],
+            "taken": self.taken,
+        }
 
     def taken(self, speed: FloatArray) -> FloatArray:
         """Return what the propeller takes in steady running over that of the working point, shape (speeds,).

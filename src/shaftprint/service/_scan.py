@@ -24,12 +24,14 @@ from shaftprint.service._start import begun
 from shaftprint.service._vetting import (
     Found,
     beside_full_load,
+    is_other,
     lever_follows_load,
     off_the_line,
     play_of_lever,
     shift_of_lever,
     speed_is_off,
     torque_is_held,
+    usual_load,
     way_on,
 )
 from shaftprint.units import PERCENT, SECONDS_PER_HOUR, rpm_from_rev_s
@@ -166,6 +168,7 @@ def scan(
             segments=gathered.segments, line=None, seconds=seconds, left_out=left_out, found=(), refused=str(error),
             accuracy={}, values={}, rows=(), facts={}, spans_s=gathered.spans_s,
         )  # fmt: skip
+    gathered = _of_one_water(_that_follows(gathered, line), model)
     segments, found, each, model = _judged(gathered, line, model)
     found = (at_full_load, *found)
     simulated_ones = [one for one in each if one is not None]
@@ -202,12 +205,6 @@ def _judged(
     gathered: Gathered, line: LeverLine, model: ServiceModel
 ) -> tuple[tuple[Segment, ...], tuple[Found, ...], list[Score | None], ServiceModel]:
     """Return segments with their reasons, what was found of the whole log, what each tells, and at which numbers."""
-    gathered = replace(
-        gathered,
-        segments=tuple(
-            one if one.reason else replace(one, reason=speed_is_off(one, line)) for one in gathered.segments
-        ),
-    )
     usable = [one for one in gathered.segments if not one.reason]
     still = gathered.still
     held = torque_is_held(still, line, speed_rev_s=model.engine_speed_rev_s)
@@ -234,6 +231,34 @@ def _judged(
     )
     kept = [each.get(id(one)) if not new.reason else None for one, new in zip(gathered.segments, segments, strict=True)]
     return segments, tuple(found), kept, model
+
+
+def _that_follows(gathered: Gathered, line: LeverLine) -> Gathered:
+    """Return what the logs hold, with the reason where the speed does not come to what the lever asks for."""
+    segments = (one if one.reason else replace(one, reason=speed_is_off(one, line)) for one in gathered.segments)
+    return replace(gathered, segments=tuple(segments))
+
+
+def _of_one_water(gathered: Gathered, model: ServiceModel) -> Gathered:
+    """Return what the logs hold of the water of most moves: of a day at the quay and underway one of both is left."""
+    usable = [one for one in gathered.segments if not one.reason]
+    if not usable:
+        return gathered
+    loads = model.loads(usable)
+    usual = usual_load(loads)
+    reasons = {
+        id(one): f"the propeller takes {abs(load / usual - 1.0):.0%} {'more' if load > usual else 'less'} torque than "
+        "in most moves: the ship has way on in one of them and not in the other, or turns"
+        for one, load, other in zip(usable, loads, is_other(loads, usual), strict=True)
+        if other
+    }
+    still = gathered.still
+    kept = still if model.sails else still.only(~is_other(still.load, usual))
+    return replace(
+        gathered,
+        segments=tuple(replace(one, reason=reasons.get(id(one), one.reason)) for one in gathered.segments),
+        still=kept,
+    )
 
 
 def _accuracy(each: Sequence[Score], model: ServiceModel, *, used: int) -> tuple[dict[str, float], dict[str, float]]:

@@ -70,6 +70,19 @@ class Segment:
         """Length of what is compared [s]."""
         return self.speed_rev_s.size * self.every / self.rate_hz
 
+    def load(
+        self,
+        *,
+        speed_rev_s: float,
+        torque_nm: float,
+        tau_dn: float,
+        taken: Callable[[FloatArray], FloatArray],
+    ) -> float:
+        """Return the torque of the propeller over what it takes at this speed, as ``record`` states it."""
+        n, torque = self.speed_rev_s / speed_rev_s - 1.0, self.torque_nm / torque_nm - 1.0
+        gained = tau_dn * (n[-1] - n[0]) / self.seconds
+        return (1.0 + float(np.mean(torque)) - float(gained)) / float(np.mean(taken(n)))
+
     def record(
         self,
         line: LeverLine,
@@ -88,8 +101,7 @@ class Segment:
         decimator = Decimator(every=self.every)
         drive = line.speed_rev_s(self.lever_v) / speed_rev_s - 1.0
         n, torque = self.speed_rev_s / speed_rev_s - 1.0, self.torque_nm / torque_nm - 1.0
-        gained = tau_dn * (n[-1] - n[0]) / self.seconds
-        load = (1.0 + float(np.mean(torque)) - float(gained)) / float(np.mean(taken(n)))
+        load = self.load(speed_rev_s=speed_rev_s, torque_nm=torque_nm, tau_dn=tau_dn, taken=taken)
         return Record(
             name=self.name,
             rate_hz=self.rate_hz / self.every,

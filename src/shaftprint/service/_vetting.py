@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.catalogue._gauge import T_SP
 from shaftprint.distributions import deviations
 from shaftprint.service._gather import MEAN_S, StillMeans
@@ -54,6 +54,8 @@ _FULL_LOAD = 0.95
 # that than to nothing is no governor's doing. How often a sound log may be refused, and the least degrees of freedom.
 _HELD, _HELD_RATE, _FEWEST_HELD = -0.25, 1e-3, 8
 _BEFORE_SAMPLES, _AFTER_S, _UNTIL_S = 40, 4.0, 9.0
+# Loads of one water lie within this share about a usual one, and those beyond the second are of another.
+_ALIKE, _OTHER = 0.08, 0.13
 # A lever came from where it was this share of its move away. Half of its play counts from so many standard deviations
 # and this share of the speed on, told by so many moves.
 _LAST_WAY, _PLAY_STD, _PLAY, _FEWEST_ENDS = 0.1, 5.0, 6e-4, 12
@@ -295,6 +297,22 @@ def play_of_lever(segments: Sequence[Segment], line: LeverLine) -> Found:
             "between its sensor and the governor; log the demand that the control unit takes."
         )
     return Found(what=what, value=play, unit="rpm", refused=refused)
+
+
+def usual_load(loads: FloatArray) -> float:
+    """Return the load that most segments have.
+
+    ``loads``: torque over what the propeller takes at that speed, shape (segments,).
+    """
+    order = np.sort(np.log(np.maximum(loads, 1e-3)))
+    counts = np.searchsorted(order, order + 2.0 * _ALIKE, side="right") - np.arange(order.size)
+    first = int(np.argmax(counts))
+    return float(np.exp(np.median(order[first : first + int(counts[first])])))
+
+
+def is_other(loads: FloatArray, usual: float) -> BoolArray:
+    """Return whether loads are those of another water: a model of both, quay and underway, knows neither."""
+    return np.abs(loads / usual - 1.0) > _OTHER
 
 
 def way_on(segments: Sequence[Segment], *, sails: bool = False) -> Found:
