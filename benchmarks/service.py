@@ -208,7 +208,7 @@ def _numbers(theta: FloatArray, model: ServiceModel) -> dict[str, tuple[float, F
     numbers = {name: (float(theta[k]), np.eye(len(FREE))[k]) for k, name in enumerate(FREE)}
     delays = np.array([float(name in ("t_d", "t_sp")) for name in FREE])
     numbers["t_d + t_sp"] = (float(delays @ theta), delays)
-    margins = {one.name: (one.value, one.slope) for one in margin_numbers_of(structure, theta, held)}
+    margins = {one.name: (one.value, one.slope) for one in margin_numbers_of(structure, theta, held, FREE)}
     return numbers | {"gain margin": margins["gain margin"]}
 
 

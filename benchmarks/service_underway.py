@@ -28,7 +28,7 @@ from benchmarks.service import DOCUMENT, add_options, drawn, said_of
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.distributions import NORMAL_95
 from shaftprint.service._fingerprint import STRUCTURE_UNDERWAY
-from shaftprint.service._model import FREE_UNDERWAY, OVER_TORQUE
+from shaftprint.service._model import FREE_UNDERWAY
 from shaftprint.service._ship_numbers import margin_numbers_of
 from shaftprint.tug import Sailing, Truth, Tug, sail_service
 from shaftprint.tug._like_stan_tug import like_stan_tug_1205
@@ -40,8 +40,6 @@ END = "<!-- table of benchmarks/service_underway.py: end -->"
 LOGGED = "stan-tug-1205-service-underway"
 SHIPS = ("stan-tug-1205-underway", "pt-may-underway")
 """A tug with propellers in nozzles and a launch with open ones, both logged as the first of them in service."""
-SHOWN = ("t_d + t_sp", "I_dn", "M_s0", "gain margin")
-"""Numbers beside the parameters."""
 _PERCENT = 100.0
 # Without a size of their own.
 _NEAR_NOTHING = ("g", "t_gauge")
@@ -80,23 +78,17 @@ def ship_of(vessel: Vessel, seed: int) -> Tug:
     )
 
 
-def true_numbers(truth: Truth, vessel: Vessel, load: float) -> dict[str, float]:
-    """Return the true values of what is asked for, normalised as the fingerprint is.
-
-    ``load``: its torque at the working point over that of the vessel file.
-    """
-    to_point = truth.shaft_torque_nm / (load * vessel.working_point.driving_torque_nm)
+def true_numbers(truth: Truth) -> dict[str, float]:
+    """Return the true values of what is asked for, at the speed of the vessel file and the torque taken there."""
     own = {name: truth.normalised.get(name, float(name == "c_set")) for name in FREE_UNDERWAY}
-    theta = np.array([own[name] * (to_point if name in OVER_TORQUE else 1.0) for name in FREE_UNDERWAY])
     structure = shipped_structure(STRUCTURE_UNDERWAY)
     held = {p.name: p.value for p in structure.parameters if p.name not in FREE_UNDERWAY} | {"k_q": 2.0}
-    margins = {one.name: one.value for one in margin_numbers_of(structure, theta, held, FREE_UNDERWAY)}
-    return {
-        **dict(zip(FREE_UNDERWAY, theta.tolist(), strict=True)),
+    margins = margin_numbers_of(structure, np.array(list(own.values())), held, FREE_UNDERWAY)
+    return own | {
         "t_d + t_sp": own["t_d"] + own["t_sp"],
         "I_dn": truth.physical["inertia_downstream_kg_m2"],
         "M_s0": truth.shaft_torque_nm,
-        "gain margin": margins["gain margin"],
+        "gain margin": next(one.value for one in margins if one.name == "gain margin"),
     }
 
 
@@ -111,7 +103,7 @@ def outcome(name: str, seed: int, hours: float, folder: Path) -> dict[str, Any]:
     if day is None:
         return told
     found = day.fingerprint
-    true = true_numbers(truth, vessel, found.conditions.shaft_torque.value / vessel.working_point.driving_torque_nm)
+    true = true_numbers(truth)
     numbers = {one: (true[one], found.by_name[one].value, found.by_name[one].std) for one in true}
     return told | {"numbers": numbers, "trusted": [one for one in true if one in found.verdict.trusted]}
 
