@@ -66,6 +66,11 @@ _OTHER_LINE = (
 )
 FLOOR: Mapping[str, float] = MappingProxyType({GAUGE_K_P.name: 0.003, GAUGE_K_I.name: 0.003, TAU_DN.name: 0.002})
 """Share of each number below which its standard deviation does not fall, however long the service."""
+UNDERWAY_WIDER = 1.5
+"""Deviations underway over those of the scatter: no law of hull and propeller is exact over all speeds.
+
+Without it 98 % of the intervals of 20 drawn tugs with nozzles held, and 87 % of 19 launches with open propellers.
+"""
 FLOOR_S: Mapping[str, float] = MappingProxyType({T_D.name: 1e-3, T_SP.name: 1e-3})
 """The same for delays [s]."""
 
@@ -273,6 +278,7 @@ def fit_segments(records: Sequence[Record], model: ServiceModel, *, progress: Pr
     theta, sums = course.theta, sums_of(course.each, model, course.theta)
     of_noise: FloatArray = np.linalg.inv(sums.information).astype(np.float64)
     covariance, freedom = clustered(course.each, sums, of_noise)
+    covariance *= UNDERWAY_WIDER**2 if model.sails else 1.0
     misfit = misfit_of(course.runs, course.whitening, model, theta, sums.prior)
     return ServiceFit(
         theta=frozen_float(theta),
