@@ -14,7 +14,8 @@ from shaftprint.drift import shared_errors
 from shaftprint.errors import ServiceError
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
 from shaftprint.service import fit_service, scan
-from shaftprint.service._fit import _beside_limits, clustered, sums_of
+from shaftprint.service._deviations import clustered
+from shaftprint.service._fit import _beside_limits, sums_of
 from shaftprint.service._gather import gather, lever_line
 from shaftprint.service._model import FREE, service_model
 from shaftprint.service._progress import Progress
@@ -55,7 +56,7 @@ def test_intervals_are_as_wide_as_segments_scatter_and_no_narrower_than_the_nois
         each = scores_of(800, rng, scatter)
         sums = sums_of(each, model, model.theta)
         of_noise = np.linalg.inv(sums.information)
-        wider = np.sqrt(np.diag(clustered(each, sums, of_noise)[0]) / np.diag(of_noise))
+        wider = np.sqrt(np.diag(clustered(each, sums.prior, of_noise)[0]) / np.diag(of_noise))
         # K_p and K_i have no prior
         assert wider[:2] == pytest.approx(expected, rel=0.1)
 
@@ -74,7 +75,7 @@ def test_intervals_hold_as_often_as_they_say_however_few_segments_tell_a_number(
         error = of_noise @ sums.slope
         # the scatter is that of the slopes at the greatest likelihood
         fitted = [replace(one, slope=one.slope - one.information @ error) for one in each]
-        covariance, dof = clustered(fitted, sums, of_noise)
+        covariance, dof = clustered(fitted, sums.prior, of_noise)
         held.append(abs(error[0]) < 1.96 * np.sqrt(covariance[0, 0]))
         freedom.append(dof[0])
     assert 0.935 < np.mean(held) < 0.985

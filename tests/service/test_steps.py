@@ -62,8 +62,8 @@ def test_segments_that_meet_a_limit_at_the_start_only_have_no_score_there_and_on
     monkeypatch.setattr(_fit, "scores", scores)
     monkeypatch.setattr(_fit, "noise_of", lambda runs: None)
     monkeypatch.setattr(_fit, "misfit_of", lambda *_: SimpleNamespace(spread=0.0))
-    monkeypatch.setattr(_fit, "clustered", lambda each, sums, of_noise: (of_noise, np.ones(len(FREE))))
-    model = SimpleNamespace(theta=start, theta_known=start, prior_std={})
+    monkeypatch.setattr(_fit, "clustered", lambda each, prior, of_noise: (of_noise, np.ones(len(FREE))))
+    model = SimpleNamespace(theta=start, theta_known=start, prior_std={}, free=FREE, sails=False)
     fit = _fit.fit_segments(list(range(20)), model)
     assert np.flatnonzero(~fit.counts_at_start).tolist() == [3]
     assert len(fit.at_start) == 19

@@ -13,8 +13,7 @@ from shaftprint.service import fit_service, scan
 from shaftprint.service._day_folder import read_day
 from shaftprint.service._model import service_model
 from shaftprint.service._watch import watch_days
-from shaftprint.tug import sail_service
-from shaftprint.tug._like_stan_tug import like_stan_tug_1205
+from shaftprint.tug import Sailing, Tug, sail_service
 from shaftprint.vessel import load_vessel
 
 NOW = datetime(2026, 11, 28, 12, tzinfo=UTC)
@@ -57,11 +56,13 @@ def test_service_underway_tells_line_and_ship(worked, day, tmp_path):
     # what the file knows of the ship beforehand is a third of these slopes; half an hour halves it
     b = found.quantity("b")
     assert b.std < 0.2 * abs(b.value)
-    assert found.quantity("tau_dn").std < 0.02 * found.quantity("tau_dn").value
+    # over the torque of the file; over that of the service it hangs on how the load goes with the speed
+    inertia = made.model.free.index("tau_dn")
+    assert made.fit.std[inertia] < 0.012 * made.fit.theta[inertia]
     # the torque is that at the speed of the file, where the ship's crew hardly ever goes
     torque = found.conditions.shaft_torque
     assert abs(torque.value - truth.shaft_torque_nm) < 4.0 * torque.std
-    assert torque.std < 0.02 * torque.value
+    assert torque.std < 0.04 * torque.value
     assert any("makes way" in one for one in found.verdict.assumptions)
     write_fingerprint(found, tmp_path / "fingerprint.json")
     assert read_fingerprint(tmp_path / "fingerprint.json") == found
@@ -94,11 +95,11 @@ def test_the_file_of_the_quay_is_refused_for_logs_underway_and_the_other_way_rou
 def test_of_a_day_at_the_quay_and_underway_one_of_both_counts(vessel, tmp_path):
     """An hour underway in three gave an inertia 4 deviations off, trusted: the load rises by less than a log shows."""
     quay = load_vessel("stan-tug-1205-service")
-    lying, sailing = like_stan_tug_1205(quay), like_stan_tug_1205(vessel)
-    # one lever for both
-    line = {one: getattr(lying, one) for one in ("set_point_intercept_rpm", "set_point_slope_rpm_per_v")}
-    at_quay, truth = sail_service(quay, tmp_path / "quay", hours=0.5, seed=6, habits=BUSY, tug=lying)
-    under, _ = sail_service(vessel, tmp_path / "under", hours=0.4, seed=7, habits=BUSY, tug=replace(sailing, **line))
+    # one tug, and one lever for both
+    tug = Tug.stan_tug_1205()
+    at_quay, truth = sail_service(quay, tmp_path / "quay", hours=0.5, seed=6, habits=BUSY, tug=tug)
+    sailing = replace(tug, sailing=Sailing())
+    under, _ = sail_service(vessel, tmp_path / "under", hours=0.4, seed=7, habits=BUSY, tug=sailing)
     found = scan([*at_quay, *under], quay)
     assert not found.refused
     of_quay = {str(path) for path in at_quay}

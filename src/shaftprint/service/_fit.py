@@ -1,14 +1,7 @@
-"""From segments to parameters: a few steps of Gauss and Newton, and intervals from the scatter of the segments.
+"""From segments to parameters: a few steps of Gauss and Newton.
 
 Fingerprints are right to a few per cent, so that two or three steps from one of them are enough. The noise is taken
-anew where a step was long. What the noise model says of the uncertainty is too little where noise is not one all the
-time; segments are independent of each other, so that the scatter of their slopes is the variance of the sum::
-
-    cov = H^-1 (sum_c g_c g_c^T) H^-1
-
-(White, 1982; Liang and Zeger, 1986), in full, with the correlations that it has, and wider where few segments tell a
-number; a standard deviation is never less than that of the noise model. To it comes a floor: what was left of the
-errors in many hours of simulated service however long they were.
+anew where a step was long.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,9 +12,9 @@ from typing import Self
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
-from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, GAUGE_OMEGA_N, GAUGE_ZETA, T_D, T_SP, TAU_DN, TAU_UP
-from shaftprint.distributions import NORMAL_95, deviations
+from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, GAUGE_OMEGA_N, GAUGE_ZETA, T_D, TAU_DN, TAU_UP
 from shaftprint.errors import ServiceError
+from shaftprint.service._deviations import UNDERWAY_WIDER, clustered, with_floor
 from shaftprint.service._misfit import Misfit, misfit_of
 from shaftprint.service._model import ServiceModel
 from shaftprint.service._progress import Progress, Reached
@@ -39,10 +32,6 @@ _MOST_STEPS, _LAST, _SHORT, _NOISE_ANEW, _MOST_NOISES = 12, 0.3, 1.5, 1.5, 4
 _ROUGH = 3.0
 # Condition of the scaled curvature beyond which some number is not told at all.
 _WORST = 1e12
-# A segment that alone tells something has left of its own noise, once it is fitted, this share at least.
-_LEAST_LEFT = 0.1
-# What an interval holds, and degrees of freedom beyond which a deviation is as good as known.
-_COVERAGE, _MANY = 0.95, 1e4
 # Times that a step is halved before the fit ends.
 _HALVINGS = 6
 # Below which no step goes.
@@ -64,15 +53,6 @@ _OTHER_LINE = (
     "begin from a fingerprint of this line (--fingerprint). If that does not help, the line is not the model: gains "
     "over the speed from a table, or a rate limit of the demand behind the lever; make a test (shaftprint plan)."
 )
-FLOOR: Mapping[str, float] = MappingProxyType({GAUGE_K_P.name: 0.003, GAUGE_K_I.name: 0.003, TAU_DN.name: 0.002})
-"""Share of each number below which its standard deviation does not fall, however long the service."""
-UNDERWAY_WIDER = 1.5
-"""Deviations underway over those of the scatter: no law of hull and propeller is exact over all speeds.
-
-Without it 98 % of the intervals of 20 drawn tugs with nozzles held, and 87 % of 19 launches with open propellers.
-"""
-FLOOR_S: Mapping[str, float] = MappingProxyType({T_D.name: 1e-3, T_SP.name: 1e-3})
-"""The same for delays [s]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -277,7 +257,7 @@ def fit_segments(records: Sequence[Record], model: ServiceModel, *, progress: Pr
             progress.keep(course.reached)
     theta, sums = course.theta, sums_of(course.each, model, course.theta)
     of_noise: FloatArray = np.linalg.inv(sums.information).astype(np.float64)
-    covariance, freedom = clustered(course.each, sums, of_noise)
+    covariance, freedom = clustered(course.each, sums.prior, of_noise)
     covariance *= UNDERWAY_WIDER**2 if model.sails else 1.0
     misfit = misfit_of(course.runs, course.whitening, model, theta, sums.prior)
     return ServiceFit(
@@ -359,43 +339,6 @@ def _with_those_back(
     every = dict(zip(np.flatnonzero(counts).tolist(), runs, strict=True)) | dict(zip(out, back, strict=True))
     counts[:] = True
     return _beside_limits([every[k] for k in sorted(every)], counts)
-
-
-def clustered(each: Sequence[Score], sums: Sums, of_noise: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the covariance from the scatter of segments, (free, free), and the degrees of freedom of each, (free,).
-
-    A segment that tells much pulls the fit towards its own noise: its slope there is enlarged to what it would be had
-    it not been fitted. Few such segments tell their own scatter badly, so that each deviation is widened until 1.96 of
-    it hold 95 % (Bell and McCaffrey, 2002; Pustejovsky and Tipton, 2018). No deviation is less than that of the noise.
-
-    ``each``: what each segment tells, at the greatest likelihood. ``sums``: their sums. ``of_noise``: covariance by the
-    noise model, shape (free, free).
-    """
-    root: FloatArray = np.linalg.cholesky(of_noise).astype(np.float64)
-    shares = root.T @ np.array([one.information for one in each]) @ root
-    values, turn = np.linalg.eigh(0.5 * (shares + shares.transpose(0, 2, 1)))
-    enlarged = (turn / np.sqrt(np.maximum(1.0 - values, _LEAST_LEFT))[:, None, :]) @ turn.transpose(0, 2, 1)
-    slopes = np.einsum("sij,sj->si", enlarged, np.array([one.slope for one in each]) @ root)
-    scatter = root @ slopes.T @ slopes @ root.T
-    covariance = scatter + of_noise @ sums.prior @ of_noise
-    # by Satterthwaite: the squares that are summed have the covariance diag(v B v) - (B v)(B v)^T, were B the truth
-    seen = np.einsum("sij,kj->ksi", enlarged, root)
-    pulls = np.einsum("sij,ksj->ksi", shares, seen)
-    own, pulled = np.einsum("ksi,ksi->ks", pulls, seen), np.einsum("ksi,ksi->ks", pulls, pulls)
-    together = np.einsum("ksi,ksj->kij", pulls, pulls)
-    squares = np.sum(own**2 - 2.0 * own * pulled, axis=1) + np.sum(together**2, axis=(1, 2))
-    freedom = np.sum(own - pulled, axis=1) ** 2 / squares
-    # what the vessel file states has no scatter
-    freedom *= (np.diag(covariance) / np.diag(scatter)) ** 2
-    wider = np.array([deviations(_COVERAGE, float(one)) for one in np.minimum(freedom, _MANY)]) / NORMAL_95
-    wider = np.maximum(wider, np.sqrt(np.diag(of_noise) / np.diag(covariance)))
-    return np.asarray(covariance * np.outer(wider, wider)), freedom
-
-
-def with_floor(covariance: FloatArray, theta: FloatArray, free: Sequence[str]) -> FloatArray:
-    """Return a covariance with what no length of service takes away, shape (free, free)."""
-    floor = [FLOOR.get(name, 0.0) * value + FLOOR_S.get(name, 0.0) for name, value in zip(free, theta, strict=True)]
-    return np.asarray(covariance + np.diag(np.square(floor)))
 
 
 def _misfit(each: Sequence[Score], sums: Sums, model: ServiceModel, theta: FloatArray) -> float:

@@ -122,7 +122,7 @@ class ServiceModel:
         return {
             "speed_rev_s": self.engine_speed_rev_s,
             "torque_nm": self.shaft_torque_nm,
-            "tau_dn": self.values[TAU_DN.name],
+            "inertia_time_s": self.values[TAU_DN.name],
             "taken": self.taken,
         }
 

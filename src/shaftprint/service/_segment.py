@@ -75,12 +75,12 @@ class Segment:
         *,
         speed_rev_s: float,
         torque_nm: float,
-        tau_dn: float,
+        inertia_time_s: float,
         taken: Callable[[FloatArray], FloatArray],
     ) -> float:
         """Return the torque of the propeller over what it takes at this speed, as ``record`` states it."""
         n, torque = self.speed_rev_s / speed_rev_s - 1.0, self.torque_nm / torque_nm - 1.0
-        gained = tau_dn * (n[-1] - n[0]) / self.seconds
+        gained = inertia_time_s * (n[-1] - n[0]) / self.seconds
         return (1.0 + float(np.mean(torque)) - float(gained)) / float(np.mean(taken(n)))
 
     def record(
@@ -89,19 +89,19 @@ class Segment:
         *,
         speed_rev_s: float,
         torque_nm: float,
-        tau_dn: float,
+        inertia_time_s: float,
         taken: Callable[[FloatArray], FloatArray],
     ) -> Record:
         """Return it as a record of deviations, its load without the torque that accelerates the propeller.
 
         ``line``: what the lever asks for. ``speed_rev_s``, ``torque_nm``: engine speed [rev/s] and shaft torque [N m]
-        of the working point. ``tau_dn``: inertia time behind the gauge [s]. ``taken``: from shaft speeds to what the
+        of the working point. ``inertia_time_s``: that behind the gauge [s]. ``taken``: from shaft speeds to what the
         propeller takes in steady running, deviations and torques over those of the working point.
         """
         decimator = Decimator(every=self.every)
         drive = line.speed_rev_s(self.lever_v) / speed_rev_s - 1.0
         n, torque = self.speed_rev_s / speed_rev_s - 1.0, self.torque_nm / torque_nm - 1.0
-        load = self.load(speed_rev_s=speed_rev_s, torque_nm=torque_nm, tau_dn=tau_dn, taken=taken)
+        load = self.load(speed_rev_s=speed_rev_s, torque_nm=torque_nm, inertia_time_s=inertia_time_s, taken=taken)
         return Record(
             name=self.name,
             rate_hz=self.rate_hz / self.every,
