@@ -151,3 +151,25 @@ def test_a_gear_ratio_that_no_sensor_shows_is_not_trusted_where_the_torque_contr
     verdict = sp.read("found").verdict
     assert {"I_dn", "I_up", "K_Q", "K_p", "gain margin"}.isdisjoint(verdict.trusted)
     assert {"tau_dn", "k_q"} <= {*verdict.trusted}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ("[[0.0, 480.0], [100.0, 1350.0]]", "The set point in demand asks for"),
+        ("[[0.0, 1600.0], [100.0, 600.0]]", "Channel demand: expected a speed that falls with it"),
+    ],
+)
+def test_a_lever_whose_table_is_wrong_is_told_by_inspect_first_and_by_identify_as_a_caution(run, ship, table, said):
+    vessel = ship("0=600", "100=1600")
+    assert run("new", "campaign", "--test", "5min", "--vessel", vessel, "test.toml").exit_code == 0
+    messages = [word for one in ("torque", "speed", "set-point") for word in ("--messages", f"{one}=50")]
+    assert run("sail", vessel, "test.toml", *messages, "-o", "bus.nc", "--no-progress").exit_code == 0
+    text = Path(vessel).read_text(encoding="utf-8")
+    Path("wrong.toml").write_text(re.sub("table_rpm = .*", f"table_rpm = {table}", text), encoding="utf-8")
+    files = ("bus.nc", "--campaign", "test.toml", "--no-progress", "--vessel", "wrong.toml")
+    assert " ".join(run("inspect", *files).output.split()).startswith(f"Not as it is. {said}")
+    run("identify", *files, "-o", "found", "--no-report")
+    # the line of the lever is that of the recording: no number hangs on the table
+    assert any(one.startswith(said) for one in sp.read("found").verdict.cautions)

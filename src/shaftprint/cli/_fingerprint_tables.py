@@ -65,8 +65,6 @@ def print_found(
             where = "`shaftprint show` and the report have them"
             sentences += (f"{ASSUMED} {_points(len(verdict.assumptions))} that no recording can show; {where}.",)
     _print_verdict(fingerprint, sentences, line)
-    if fingerprint.quality.remarks and not is_detailed():
-        print_findings("Remarks on the signals, each to be mended", fingerprint.quality.remarks, is_answer=True)
     if verdict.trustworthy:
         usable, unusable = found_sentences(fingerprint, truth)
         print_findings("What was found", [*usable, *further], is_answer=True)

@@ -15,10 +15,18 @@ from typing import TYPE_CHECKING
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.reasons import Reason
-from shaftprint.signals._load_reasons import FAR, points_of, propeller_reason, torque_beside_file, what_fits
+from shaftprint.signals._load_reasons import (
+    FAR,
+    points_of,
+    propeller_reason,
+    torque_beside_file,
+    torque_to_look_at,
+    what_fits,
+)
 from shaftprint.signals._scale_reasons import scale_reasons
 from shaftprint.signals.levels._gauge_zero import zero_between, zero_of_share, zero_reason
 from shaftprint.signals.levels._speed_scale import ScaleEvidence, load_over_expected
+from shaftprint.signals.levels._working_point import expect_stated_lever
 from shaftprint.units import PERCENT
 
 if TYPE_CHECKING:
@@ -128,6 +136,13 @@ def _by_a_factor(
             ),
         ),
     )
+
+
+def strange_beside_file(signals: "Signals", vessel: "Vessel") -> tuple[str, ...]:
+    """Return what of lever and torque is other than the vessel file has it, and moves no number of the line."""
+    lever = expect_stated_lever(signals.working_point, signals.calibration, vessel)
+    said = (*lever, torque_to_look_at(points_of(signals), vessel))
+    return tuple(f"{one[:1].upper()}{one[1:]}" for one in said if one)
 
 
 def _torque_beside_file(signals: "Signals", vessel: "Vessel") -> tuple[Reason, ...]:

@@ -17,7 +17,7 @@ from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._assumptions import assumptions_of
 from shaftprint.fingerprint._calibration import calibration_quantities
 from shaftprint.fingerprint._conditions import Conditions, conditions_stated
-from shaftprint.fingerprint._contradictions import contradictions
+from shaftprint.fingerprint._contradictions import contradictions, strange_beside_file
 from shaftprint.fingerprint._findings import findings_of
 from shaftprint.fingerprint._fingerprint import Fingerprint, Quality
 from shaftprint.fingerprint._joint_numbers import joint_numbers
@@ -41,7 +41,6 @@ from shaftprint.identify.uncertainty._budget import Budget, budget
 from shaftprint.identify.uncertainty._profile import Interval, profile
 from shaftprint.models._combination import Combination
 from shaftprint.reasons import Note, Reason, doubt_scales
-from shaftprint.signals._load_reasons import points_of, torque_to_look_at
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
@@ -132,9 +131,8 @@ def take_fingerprint(
     margin = margin_quantities(identification, profiled, stated)
     off = contradictions(physical, signals, vessel, campaign)
     judged = with_speed_age(profiled, stated)
-    # a reason says more of what a wrong scale makes of torque and engine
+    # a reason says more of what a wrong scale makes of lever, torque and engine
     in_doubt = doubt_scales((*off, *reasons, *signals.reasons))
-    torque = torque_to_look_at(points_of(signals), vessel)
     verdict = assess(
         identification,
         profile=judged,
@@ -142,7 +140,7 @@ def take_fingerprint(
         reasons=(*off, *reasons),
         further=[*physical, *margin, conditions.engine_speed, conditions.shaft_torque],
         assumptions=assumptions_of(identification, vessel, margins, intervals),
-        cautions=() if in_doubt else (*([torque] if torque else []), *cautions),
+        cautions=() if in_doubt else (*strange_beside_file(signals, vessel), *cautions),
         explained_share=explained_share,
     )
     return Fingerprint(
