@@ -49,7 +49,9 @@ def test_a_line_is_overdue_after_its_days_and_not_before(site):
     newest = datetime(2026, 3, 1, 9, tzinfo=UTC)
     assert stands(site, {}, now=newest + timedelta(days=365)).kind == "unchanged"
     late = stands(site, {}, now=newest + timedelta(days=366))
-    assert (late.kind, late.note) == ("test overdue", "no change seen since 2025-03")
+    # what is seen stays the word, in its own colour
+    assert (late.kind, late.overdue) == ("test overdue", True)
+    assert (late.word, late.look, late.note) == ("no change seen since 2025-03", "fine", "")
     # what is not judged yet is not told as overdue, but beside it
     unknown = stands(site, now=newest + timedelta(days=366))
     assert (unknown.kind, unknown.overdue) == ("being judged", True)
@@ -58,6 +60,7 @@ def test_a_line_is_overdue_after_its_days_and_not_before(site):
     # of those that only want a test, what wears stands above what does not
     wearing = stands(site, {"causes": [STEP | {"expected": True}]}, now=newest + timedelta(days=366))
     assert (wearing.kind, wearing.clearness > late.clearness) == ("test overdue", True)
+    assert (wearing.word, wearing.look) == ("worn as expected: propeller", "worn")
     # three rows carry the word, so three are counted: one is nothing else
     rows = [SimpleNamespace(standing=standing) for standing in (late, unknown, both)]
     assert headline_of(rows) == "3 shaft lines: 1 changed, 3 with a test overdue, 1 being judged"

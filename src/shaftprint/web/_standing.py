@@ -56,12 +56,11 @@ def standing_of(
     kind, word, look, note = _said(line, found)
     if found is not None and found[0] != line.state:
         note = "; ".join(filter(None, (note, "being judged anew")))
-    # what is not known yet is told as such, with the test that is overdue beside it
+    # what is seen is the word, in its own colour; that the test is overdue is said quietly below it
     if overdue and kind in {"worn as expected", "unchanged"}:
-        note = "; ".join(filter(None, (word, note)))
         # of those that only want a test, what wears stands above what does not
         worn = 0.0 if found is None else _clearness(found[1], expected=True)
-        return Standing(kind="test overdue", word="test overdue", look="look", note=note, overdue=True, clearness=worn)
+        return Standing(kind="test overdue", word=word, look=look, note=note, overdue=True, clearness=worn)
     clearness = 0.0 if found is None or kind != "changed" else _clearness(found[1], expected=False)
     return Standing(kind=kind, word=word, look=look, note=note, overdue=overdue, clearness=clearness)
 

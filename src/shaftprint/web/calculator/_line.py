@@ -70,7 +70,7 @@ def _cause(course: "DatedCause", history: "History", finding: "WatchFinding") ->
     now = finding.by_now.get(course.cause.name) if course.shape == "ramp" else None
     return {
         "expected": course.is_expected,
-        "to_do": course.cause.told_by,
+        "to_do": course.to_do,
         "now": None if now is None else {"size": course.cause.in_unit(now.size), "std": course.cause.in_unit(now.std)},
         "name": course.cause.name,
         "words": course.words,
