@@ -29,7 +29,7 @@ def code(text: str) -> str:
 
 
 def symbol_rows() -> list[tuple[str, ...]]:
-    """Return symbol, unit, meaning, physical form and structures of all parameters and combinations, by symbol."""
+    """Return symbol, meaning, unit, physical form and structures of all parameters and combinations, by symbol."""
     used = defaultdict(list)
     for name in STRUCTURES:
         shipped = structure(name)
@@ -39,17 +39,17 @@ def symbol_rows() -> list[tuple[str, ...]]:
             used[item.name, item.unit, item.meaning, physical].append(name)
     ordered = sorted(used.items(), key=lambda entry: (" " in entry[0][0], entry[0][0].lower(), entry[0]))
     return [
-        (code(symbol), code(unit), meaning, physical, ", ".join(names))
+        (code(symbol), meaning, code(unit), physical, ", ".join(names))
         for (symbol, unit, meaning, physical), names in ordered
     ]
 
 
 def quantity_rows() -> list[tuple[str, ...]]:
-    """Return room, quantity, unit and meaning of every table of quantities at the door of a room."""
+    """Return quantity, meaning, unit and room of every table of quantities at the door of a room."""
     rows = []
     for room in sorted(module.name for module in pkgutil.iter_modules(shaftprint.__path__) if module.ispkg):
         lines = (importlib.import_module(f"shaftprint.{room}").__doc__ or "").splitlines()
-        rows += [(room, *cells) for cells in _cells(lines)]
+        rows += [(quantity, meaning, unit, room) for quantity, unit, meaning in _cells(lines)]
     return rows
 
 
@@ -71,8 +71,8 @@ def _cells(lines: list[str]) -> list[list[str]]:
 
 
 TABLES = {
-    "symbols": lambda: table(("symbol", "unit", "meaning", "in the units of the ship", "structures"), symbol_rows()),
-    "quantities": lambda: table(("room", "quantity", "unit", "meaning and sign"), quantity_rows()),
+    "symbols": lambda: table(("symbol", "meaning", "unit", "in the units of the ship", "structures"), symbol_rows()),
+    "quantities": lambda: table(("quantity", "meaning and sign", "unit", "room"), quantity_rows()),
 }
 
 

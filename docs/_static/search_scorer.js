@@ -1,6 +1,7 @@
-// What tells how to do something comes first, what tells why the code is as it is last; a page before a place within one.
+// What tells how to do something comes first, what tells why the code is as it is last, and how it became so behind that; a page before a place within one.
 // A term or symbol that the glossary has is explained there: it comes before pages that only use the word.
 const scoreOfPlace = (page) => {
+  if (page === "history") return -60;
   if (page.startsWith("reference/")) return -40;
   if (page.startsWith("decisions")) return -20;
   if (page === "glossary") return 9;

@@ -24,6 +24,10 @@ def test_file_and_folder_give_the_same(run, demo, tmp_path, version):
     arguments = ("--source-only", "--fmi", version, "--sample", 3, "--seed", 1)
     result = run("export", "fmu", folder, *arguments, "-o", one)
     assert result.exit_code == 0
+    assert "--platform win64" not in result.output
+    (last,) = (line for line in result.output.splitlines() if line.startswith("Next:"))
+    assert last.split()[1:3] == ["shaftprint", "validate"]
+    assert last.endswith(f"--model {one}")
     assert str(one) in result.output
     assert run("export", "fmu", folder / "fingerprint.json", *arguments, "-o", two).exit_code == 0
     assert one.read_bytes() == two.read_bytes()

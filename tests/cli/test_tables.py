@@ -1,5 +1,6 @@
 """Tables on a terminal and in a file."""
 
+from shaftprint.cli._terminal import print_findings
 from shaftprint.cli.output._tables import print_table, print_tables
 from shaftprint.tables import Symbol, Table, numbers, texts
 
@@ -47,6 +48,11 @@ def test_a_table_that_is_too_wide_goes_on_below(monkeypatch, capsys):
         "                     engine",
         "",
     ]
+
+
+def test_thousands_of_a_sentence_stand_as_in_tables(capsys):
+    print_findings("Limits", ["M1 beyond full load, 5\u202f773 of 5\u202f395 N m"])
+    assert "5773 of 5395 N m" in capsys.readouterr().out
 
 
 def test_a_common_note_comes_once_and_empty_tables_not_at_all(capsys):

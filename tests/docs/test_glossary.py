@@ -28,7 +28,7 @@ def test_the_page_names_every_table():
 
 @pytest.mark.parametrize("name", STRUCTURES)
 def test_every_symbol_of_a_structure_is_there_with_its_unit(name):
-    rows = {(symbol.strip("`"), unit.strip("`")) for symbol, unit, *_ in symbol_rows()}
+    rows = {(symbol.strip("`"), unit.strip("`")) for symbol, _, unit, *_ in symbol_rows()}
     shipped = structure(name)
     assert rows >= {(item.name, item.unit) for item in (*shipped.parameters, *shipped.combinations)}
 
@@ -41,7 +41,7 @@ def test_an_inertia_time_has_its_inertia():
 
 
 def test_quantities_of_a_room_are_read_with_their_continued_lines():
-    rows = {(room, quantity): (unit, meaning) for room, quantity, unit, meaning in quantity_rows()}
+    rows = {(room, quantity): (unit, meaning) for quantity, meaning, unit, room in quantity_rows()}
     assert rows["models", "``M_s``"] == (
         "-",
         "deviation of shaft torque at the gauge over its working-point value; positive when the engine drives the "
@@ -58,7 +58,7 @@ def test_terms_are_in_order_and_have_a_meaning_of_one_sentence():
     names = [term.lower() for term, *_ in TERMS]
     assert len(names) > 40
     assert names == sorted(names)
-    for term, _, _, meaning in TERMS:
+    for term, meaning, *_ in TERMS:
         assert meaning[0].isupper(), term
         assert meaning.endswith("."), term
         assert ". " not in meaning, term

@@ -26,6 +26,7 @@ def test_a_guide_comes_before_an_attribute_and_a_decision():
     results = [
         ["reference/generated/models/Delay", "Delay.transfer", "#it", "method", 15],
         ["reference/generated/models", "shaftprint.models", "", None, 5],
+        ["history", "History", "", None, 15],
         ["decisions/0005-exact-delay", "5. Exact delay", "", None, 15],
         ["tutorials/first-fingerprint", "First fingerprint", "", None, 5],
         ["simulation", "Simulation", "", None, 5],
@@ -36,6 +37,7 @@ def test_a_guide_comes_before_an_attribute_and_a_decision():
         "decisions/0005-exact-delay",
         "reference/generated/models/Delay",
         "reference/generated/models",
+        "history",
     ]
 
 

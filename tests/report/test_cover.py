@@ -132,9 +132,7 @@ def test_many_lines_left_out_are_worth_a_look(fingerprint):
     found = fingerprint.model_copy(update={"conditions": conditions, "quality": quality})
     card = answers(found)["Were the measurements good?"]
     assert card.state == "look"
-    assert card.sentence == (
-        "2 of 4 test frequencies went into the fit, each weighted by its noise, 1 place was repaired."
-    )
+    assert card.sentence == ("2 of 4 test frequencies were left out of the fit, 1 place was repaired.")
     assert "Data quality" in card.action
 
 

@@ -17,6 +17,7 @@ from typing import Any
 
 import click
 
+from shaftprint.digits import NARROW_SPACE
 from shaftprint.escape import printable, terminal_line
 
 WIDTH = 100
@@ -200,8 +201,9 @@ def print_document() -> None:
 
 
 def _wrapped(text: str, first: str, following: str) -> str:
+    # thousands stand as in tables here, whatever sentence a page has of them
     lines = textwrap.wrap(
-        printable(text.rstrip("\n")),
+        printable(text.rstrip("\n")).replace(NARROW_SPACE, ""),
         width(),
         initial_indent=first,
         subsequent_indent=following,

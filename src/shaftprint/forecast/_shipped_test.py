@@ -8,7 +8,7 @@ from shaftprint.campaign._campaign import Campaign, load_campaign
 from shaftprint.campaign._setpoint import setpoint
 from shaftprint.design.inputs._set_point_line import line_of_sensor
 from shaftprint.design.operation._limit_use import LimitUse, limit_uses, stated_limits
-from shaftprint.digits import plain
+from shaftprint.digits import plain, plain_letters
 from shaftprint.errors import RequestError
 from shaftprint.forecast._predict import expected_motion
 from shaftprint.forecast._ship_before_test import ShipBeforeTest
@@ -72,7 +72,8 @@ def _reached(campaign: Campaign, vessel: "Vessel") -> LimitUse | None:
 
 
 def _of_limit(use: LimitUse) -> str:
-    return f"{plain(abs(use.value), 0)} of {plain(abs(use.allowed), 0)} {use.unit} of the limit {use.limit}"
+    reached, allowed = (plain_letters(plain(abs(value), 0)) for value in (use.value, use.allowed))
+    return f"{reached} of {allowed} {use.unit} of the limit {use.limit}"
 
 
 def _of_share(name: str, vessel: "Vessel", *, title: str, share: float) -> Campaign:

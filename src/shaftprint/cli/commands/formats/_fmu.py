@@ -8,6 +8,7 @@ from typing import Literal
 
 import click
 
+from shaftprint.cli._next import after_drive, print_next
 from shaftprint.cli._terminal import answer, say
 from shaftprint.cli.commands.formats._exported import (
     file_to_write,
@@ -31,7 +32,7 @@ with late():
     from shaftprint.export._fmu import WrittenFmu, write_fmu
 
 
-ALL = "all"
+ALL, WINDOWS = "all", "win64"
 # times the fastest pole: where the rule of Runge and Kutta stops being stable
 STABLE = 2.7
 
@@ -103,6 +104,12 @@ def command(
             progress=steps.reach,
         )
     _print(written)
+    if not (source_only or platforms or WINDOWS in written.platforms):
+        say(f"for Simulink on Windows add --platform {WINDOWS}")
+    if model.is_of_a_ship:
+        print_next("validate", "LOG", "--vessel", "VESSEL", "--campaign", "CAMPAIGN", "--model", written.path)
+    else:
+        print_next(*after_drive("DRIVE", fingerprint))
 
 
 def _print(written: WrittenFmu) -> None:

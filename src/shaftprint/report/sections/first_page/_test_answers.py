@@ -106,7 +106,7 @@ def predicts(validations: "Sequence[Validation]") -> Card:
     }
     actions = {
         "passes": "",
-        "undecided": "Repeat the speed steps in calmer water, or make them larger.",
+        "undecided": "Repeat the speed steps in calmer water, or make them larger where the limits leave room.",
         "fails": "Use the model for small changes of speed only; an engineer can find what limits the large ones.",
     }
     outcome = validation.outcome
@@ -118,8 +118,12 @@ def measured(fingerprint: "Fingerprint") -> Card:
     conditions, quality = fingerprint.conditions, fingerprint.quality
     used, left_out = len(conditions.lines_used), len(conditions.lines_left_out)
     repairs = sum(quality.repairs.values())
-    # which of them are clear of the noise the verdict counts
-    words = f"{used} of {used + left_out} test frequencies went into the fit, each weighted by its noise"
+    # how many are clear of the noise the verdict counts: here it is who is missing, lest one number be told twice
+    words = (
+        f"{left_out} of {used + left_out} test frequencies were left out of the fit"
+        if left_out
+        else "All test frequencies went into the fit, each weighted by its noise"
+    )
     words += f", {repairs} {'place was' if repairs == 1 else 'places were'} repaired." if repairs else "; no repairs."
     many = left_out > LEFT_OUT * (used + left_out)
     remarks = len(quality.remarks)
