@@ -29,6 +29,9 @@ from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel._vessel import Vessel
 
+# Deviance by which a latency below nothing is no chance: two standard deviations.
+_CLEARLY = 4.0
+
 
 def priors_of(
     structure: Structure, vessel: Vessel, signals: Signals, stated: Mapping[str, Prior] | None = None
@@ -170,11 +173,11 @@ def fit(
 def _fitted(
     structure: Structure, measurement: Measurement, *, settings: Settings, rng: np.random.Generator
 ) -> Identification:
-    """Return the fit of a structure; with a set point that may be logged late where its latency stops at nothing.
+    """Return the fit of a structure; with a set point that may be logged late where the data clearly want it.
 
-    Held there, it pulls the delay of the loop, and the margins with it, to where the sum of both is right; a set point
-    that is late by more leaves no stable loop. Chance looks the same, so that what rests on a channel in time is not
-    known then. A misfit of another cause is left as it is.
+    A latency that stops at nothing pulls the delay of the loop, and the margins with it, to where the sum of both is
+    right; a set point that is late by more leaves no stable loop. A misfit of another cause is left as it is, and so is
+    what chance does: that a latency is not below nothing tells much of delay and gains.
     """
     late = {
         one.name: (-one.upper, one.upper)
@@ -193,11 +196,18 @@ def _fitted(
     with suppress(IdentificationError):
         again = pairs_of(structure.free_between(**late), measurement)
         beyond = fit_of(again, rng=copy.deepcopy(rng), settings=settings)
-        if explained(beyond):
+        if explained(beyond) and _is_clearly_better(beyond, found):
             return beyond
     if isinstance(found, IdentificationError):
         raise found
     return found
+
+
+def _is_clearly_better(late: Identification, found: Identification | IdentificationError) -> bool:
+    """Return whether a set point that is logged late explains what one in time does not, or far better."""
+    if isinstance(found, IdentificationError) or not explained(found):
+        return True
+    return 2.0 * (found.cost - late.cost) > _CLEARLY
 
 
 def comparisons_of(
