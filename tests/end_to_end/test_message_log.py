@@ -52,7 +52,8 @@ def test_raw_log_of_a_bus_gives_the_gain_of_the_governor(tmp_path):
             for name, one in channels.items()
         ]  # fmt: skip
         raw_log(log, [(times, EEC1, eec1(percent, np.full(times.size, 0xFFFF / 8.0)))], analog)
-    assert "Actual engine percent torque" in call("inspect", log)
+    # the DBC file beside it says what its frames hold
+    assert "ActualEnginePercentTorque" in call("inspect", log)
     call("convert", log, "--dbc", dbc, "-o", tmp_path / "log.nc", "--no-progress")
     asked = [tmp_path / "log.nc", "--vessel", vessel, "--campaign", "short", "--no-progress"]
     inspected = call("inspect", *asked)
