@@ -14,8 +14,8 @@ def tables_of(run):
     def call(*arguments):
         with printed_tables() as printed:
             result = run(*arguments)
-        # a model that fails has tables as well
-        assert result.exit_code in (0, 3), result.stderr
+        # the demo's model fails its large steps, and has tables as well
+        assert result.exit_code == (3 if arguments[0] == "validate" else 0), result.stderr
         return printed(result.stdout)
 
     return call

@@ -35,6 +35,8 @@ RUN_ELSEWHERE = {
     "fan.toml",
     "set-point=60rpm",
 }
+# The work is done, and the answer is no: the demo's model fails its large steps.
+ANSWERED_NO = {"validate recording.nc --vessel stan-tug-1205 --campaign short --fingerprint result -o figures"}
 # What a command calls when it begins to calculate.
 BEGINS = {
     "identify": ("run", "identify_both_lines"),
@@ -121,7 +123,7 @@ def test_a_command_does_what_its_page_says(line, harbour, printed, ashore, witho
     else:
         folder = ashore(words)
         result = CliRunner().invoke(shaftprint, words, catch_exceptions=False)
-    assert result.exit_code in (0, 3), result.output
+    assert result.exit_code == (3 if line in ANSWERED_NO else 0), result.output
     assert result.stderr == ""
     for code_page in WINDOWS:
         # its tables have other rules there: tests/cli/test_code_pages.py
