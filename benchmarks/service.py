@@ -155,7 +155,7 @@ def outcome(seed: int, hours: float, folder: Path, habits: Habits | None = None)
     records = model.records([one for one in segments if not one.reason], line)
     rng = np.random.default_rng((seed, 6))
     begin = time.process_time()
-    fit = fit_segments(records, model_at(model, true * np.exp(_OLD * rng.standard_normal(true.size) * _moved())))
+    fit = fit_segments(records, model.at(true * np.exp(_OLD * rng.standard_normal(true.size) * _moved())))
     fitted_s = time.process_time() - begin
     begin = time.process_time()
     runs = [one for one in simulated(records, model, true) if not one.meets_limit]
@@ -215,11 +215,6 @@ def _numbers(theta: FloatArray, model: ServiceModel) -> dict[str, tuple[float, F
 def _moved() -> FloatArray:
     """Return which numbers an older fingerprint has wrong: not what the vessel file knows."""
     return np.array([float(name not in ("c_set", "t_gauge")) for name in FREE])
-
-
-def model_at(model: ServiceModel, theta: FloatArray) -> ServiceModel:
-    """Return a model that begins from other numbers."""
-    return replace(model, values={**model.values, **dict(zip(FREE, theta.tolist(), strict=True))})
 
 
 def report(outcomes: Sequence[Mapping[str, Any]]) -> str:

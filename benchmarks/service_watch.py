@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.kept_outcomes import kept
 from benchmarks.result_tables import write_between_marks
-from benchmarks.service import VESSEL, model_at
+from benchmarks.service import VESSEL
 from shaftprint.arrays import FloatArray
 from shaftprint.service._day_folder import Day
 from shaftprint.service._fit import sums_of
@@ -89,7 +89,7 @@ class Ship:
         return cls(
             slopes=np.array(slopes) - curvature @ error,
             information=curvature,
-            model=model_at(model, true),
+            model=model.at(true),
             prior=sums_of([], model, true).prior,
         )
 

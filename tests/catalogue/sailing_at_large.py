@@ -15,39 +15,11 @@ FREE-LOG with the slopes that the curves have at ``J_0``.
 from collections.abc import Mapping
 from typing import Any
 
-from shaftprint.catalogue._gauge import (
-    C_SET,
-    GAUGE_K_I,
-    GAUGE_K_P,
-    GAUGE_OMEGA_N,
-    GAUGE_ZETA,
-    T_AVERAGE,
-    T_D,
-    T_FILTER,
-    T_GAUGE,
-    T_HOLD,
-    T_PICKUP,
-    T_SP,
-    TAU_DN,
-    TAU_UP,
-    V_ONE,
-    G,
-)
 from shaftprint.catalogue._known_propeller import HIGHEST_WAKE, KnownPropeller
-from shaftprint.catalogue._limited import DROOP, LimitedLoop, parameters_of
-from shaftprint.catalogue._sailing import K_Q_HELD, SIGMA, T_LOG, TAU_U, E
+from shaftprint.catalogue._limited import LoadPart, limited
+from shaftprint.catalogue._sailing import SIGMA, TAU_U, E
 from shaftprint.errors import StructureError
-from shaftprint.models import (
-    AveragingSensor,
-    Delay,
-    Diagram,
-    FirstOrderLag,
-    Gain,
-    Parameter,
-    Structure,
-    first_order_lag,
-    rate_limited,
-)
+from shaftprint.models import Parameter, Structure, first_order_lag, rate_limited
 from shaftprint.models.equations._flow import Flow
 from shaftprint.models.equations._formula import Formula, Number, as_formula, number
 
@@ -79,28 +51,8 @@ def sailing_at_large(
     """
     lowest = propeller.lowest_wake()
     wake = Parameter("w", "-", lowest, HIGHEST_WAKE, max(0.2, lowest), "wake fraction")
-    loop = Diagram(
-        name="limited loop of a ship",
-        input="demand",
-        outputs=("n", "M_s", "X", "v_s"),
-        equations=LimitedLoop(limits, curve, period_s, SailingLoad(propeller)),
-        of=(
-            *(GAUGE_K_P, GAUGE_K_I, V_ONE, T_D, GAUGE_OMEGA_N, GAUGE_ZETA, TAU_DN, TAU_UP, K_Q_HELD, G, DROOP),
-            *(wake, E, TAU_U, SIGMA),
-            *parameters_of(limits),
-        ),
-    )
-    demand, ports = Gain(C_SET), loop.ports()
-    return Structure(
-        name=name,
-        title=f"closed loop of a free-sailing ship, {propeller.curve.name}{''.join(f', {limit}' for limit in limits)}",
-        input="n_set",
-        outputs={
-            "n": demand * ports["n"] * Delay(T_SP) * AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP),
-            "M_s": demand * ports["M_s"] * Delay(T_SP) * Delay(T_GAUGE) * FirstOrderLag(T_FILTER),
-            "v_s": demand * ports["v_s"] * Delay(T_SP) * Delay(T_LOG),
-        },
-    )
+    ship = LoadPart(equations=SailingLoad(propeller), parameters=(wake, E, TAU_U, SIGMA), shows=("v_s",))
+    return limited(*limits, curve=curve, period_s=period_s, name=name, load=ship)
 
 
 class SailingLoad:

@@ -115,15 +115,21 @@ def test_says_which_excitation_leaves_which_limit(ship):
     assert not any(use.is_beyond for use in before.values())
 
 
-@pytest.mark.parametrize(("beyond_s", "told"), [(0.0, 0), (10.0, 0), (14.0, 1)])
-def test_an_engine_at_full_load_for_more_than_a_twentieth_of_a_leg_is_told(ship, beyond_s, told):
-    """M1 runs for 300 s; 5000 N m are more than the tug's engine gives at 1000 rpm."""
+def with_peak(beyond_s, peak_nm, *, rpm):
+    """Return a leg of 300 s at one speed, in which the brake torque is high for some time."""
     campaign = multisine(100.0, 0.1, periods=3)
     (leg,) = campaign.legs
     time = np.arange(0.0, campaign.duration_s, 0.1)
-    torque = np.where((time >= leg.start_s + 10.0) & (time < leg.start_s + 10.0 + beyond_s), 5000.0, 100.0)
-    speed = np.full(time.size, 1000.0)
-    operation = Operation(campaign=campaign, time_s=time, set_point_rpm=speed, speed_rpm=speed, brake_torque_nm=torque)
+    torque = np.where((time >= leg.start_s + 10.0) & (time < leg.start_s + 10.0 + beyond_s), peak_nm, 100.0)
+    speed = np.full(time.size, rpm)
+    return Operation(campaign=campaign, time_s=time, set_point_rpm=speed, speed_rpm=speed, brake_torque_nm=torque)
+
+
+@pytest.mark.parametrize(("beyond_s", "told"), [(0.0, 0), (10.0, 0), (14.0, 1)])
+def test_an_engine_at_full_load_for_more_than_a_twentieth_of_a_leg_is_told(ship, beyond_s, told):
+    """M1 runs for 300 s; 5000 N m are more than the tug's engine gives at 1000 rpm."""
+    operation = with_peak(beyond_s, 5000.0, rpm=1000.0)
+    (leg,) = operation.campaign.legs
     uses = limit_uses(operation, stated_limits(ship))
     reasons = limit_reasons(uses, ["M1"])
     assert len(reasons) == told
@@ -151,13 +157,7 @@ def test_less_torque_at_the_propeller_and_more_at_the_engine_are_a_ratio_that_is
     vessel = ship.model_copy(
         update={"sensors": ship.sensors.model_copy(update={"speed": (speed,)}), "propeller": propeller}
     )
-    campaign = multisine(100.0, 0.1, periods=3)
-    (leg,) = campaign.legs
-    time = np.arange(0.0, campaign.duration_s, 0.1)
-    torque = np.where((time >= leg.start_s + 10.0) & (time < leg.start_s + 10.0 + beyond_s), 1500.0, 100.0)
-    rpm = np.full(time.size, 1300.0)
-    operation = Operation(campaign=campaign, time_s=time, set_point_rpm=rpm, speed_rpm=rpm, brake_torque_nm=torque)
-    uses = limit_uses(operation, stated_limits(vessel))
+    uses = limit_uses(with_peak(beyond_s, 1500.0, rpm=1300.0), stated_limits(vessel))
     point = WorkingPoint(
         engine_speed_rev_s=N_0 / 60.0, shaft_torque_nm=1725.0 * load, engine_speed_std_rev_s=0.0,
         shaft_torque_std_nm=0.0, set_point_v=-5.0, load_std=0.0,

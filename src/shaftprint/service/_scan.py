@@ -246,19 +246,21 @@ def _of_one_water(gathered: Gathered, model: ServiceModel) -> Gathered:
         return gathered
     loads = model.loads(usable)
     usual = usual_load(loads)
-    reasons = {
-        id(one): f"the propeller takes {abs(load / usual - 1.0):.0%} {'more' if load > usual else 'less'} torque than "
-        "in most moves: the ship has way on in one of them and not in the other, or turns"
-        for one, load, other in zip(usable, loads, is_other(loads, usual), strict=True)
-        if other
-    }
+    left = iter(zip(loads.tolist(), is_other(loads, usual).tolist(), strict=True))
+    segments = tuple(one if one.reason else _of_load(one, *next(left), usual) for one in gathered.segments)
     still = gathered.still
-    kept = still if model.sails else still.only(~is_other(still.load, usual))
     return replace(
-        gathered,
-        segments=tuple(replace(one, reason=reasons.get(id(one), one.reason)) for one in gathered.segments),
-        still=kept,
+        gathered, segments=segments, still=still if model.sails else still.only(~is_other(still.load, usual))
     )
+
+
+def _of_load(segment: Segment, load: float, is_of_another: bool, usual: float) -> Segment:
+    """Return a segment, with the reason where its load is that of another water than the usual one."""
+    if not is_of_another:
+        return segment
+    more = f"{abs(load / usual - 1.0):.0%} {'more' if load > usual else 'less'} torque than in most moves"
+    reason = f"the propeller takes {more}: the ship has way on in one of them and not in the other, or turns"
+    return replace(segment, reason=reason)
 
 
 def _accuracy(each: Sequence[Score], model: ServiceModel, *, used: int) -> tuple[dict[str, float], dict[str, float]]:

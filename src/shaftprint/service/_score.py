@@ -3,9 +3,8 @@
 Each segment is short, begins in steady running and has for itself what no model knows: its load, an offset and a drift
 of either output, and the limits where it meets them; underway the speed of the ship where it begins. These are
 projected out. The torque is compared without what the propeller takes at the speed of the same moment, at the quay
-``M - l (1 + n)^2``: the disturbances of the line move speed and torque
-together, the more the faster it turns, and what is left has one colour at all speeds. Its size goes with the load,
-``(1 + n)^2``, and is a segment's own beyond that.
+``M - l (1 + n)^2``: the disturbances of the line move speed and torque together, the more the faster it turns, and what
+is left has one colour at all speeds. Its size goes with the load, ``(1 + n)^2``, and is a segment's own beyond that.
 """
 
 from collections.abc import Mapping, Sequence

@@ -21,6 +21,7 @@ from shaftprint.service._model import ServiceModel, service_model
 from shaftprint.service._progress import progress_of
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._segment_file import read_segments
+from shaftprint.service._ship_numbers import value_and_slope
 from shaftprint.service._start import begun
 from shaftprint.time_domain._record import Record
 
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
 
 LATEST_T_SP_S, EARLIEST_S = 0.5, -0.02
 """Latency of the set point, and delay of all, beyond which the lever is not on the clock of the others [s]."""
-# Change by which slopes are taken, over the value.
-_STEP = 1e-4
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -201,20 +200,17 @@ def _load_of(
     ``records``: the segments that count. ``loads``: those of the still stretches of each day, with their standard
     deviations.
     """
-    nothing = np.zeros(fit.theta.size)
     if not model.sails:
         value, std = _mean_load(loads)
-        return Load(value=value, std=std, slope=nothing)
+        return Load(value=value, std=std, slope=np.zeros(fit.theta.size))
     speeds = np.array([float(np.mean(record.outputs["n"])) for record in records])
     shown = np.array([record.load for record in records]) * model.taken(speeds)
 
     def found(theta: FloatArray) -> FloatArray:
         return np.asarray(shown / model.at(theta).taken(speeds))
 
-    steps = np.diag(_STEP * np.maximum(np.abs(fit.theta), 1e-2))
-    slope = [float(np.mean(found(fit.theta + one) - found(fit.theta - one))) / (2.0 * one.sum()) for one in steps]
-    each = found(fit.theta)
-    return Load(value=float(each.mean()), std=float(each.std(ddof=1) / np.sqrt(each.size)), slope=np.array(slope))
+    value, slope = value_and_slope(lambda table: np.array([found(theta).mean() for theta in table]), fit.theta)
+    return Load(value=value, std=float(found(fit.theta).std(ddof=1) / np.sqrt(speeds.size)), slope=slope)
 
 
 def _mean_load(loads: Sequence[tuple[float, float]]) -> tuple[float, float]:

@@ -1,6 +1,6 @@
 """Numbers that follow from the parameters of a service fit: what they are worth, and where their errors come from."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -67,18 +67,30 @@ def parameter_numbers(structure: Structure, theta: FloatArray, free: Sequence[st
     ]
 
 
-def _combined(one: Combination, theta: FloatArray, held: Mapping[str, float], free: Sequence[str]) -> ShipNumber:
-    """Return a combination of the parameters, its slopes from differences."""
+def value_and_slope(of: Callable[[FloatArray], FloatArray], theta: FloatArray) -> tuple[float, FloatArray]:
+    """Return what follows from the parameters, and its slopes from differences, shape (free,).
+
+    ``of``: from parameters in rows, shape (rows, free), to a value for each. ``theta``: where, shape (free,).
+    """
     steps = _STEP * np.maximum(np.abs(theta), 1e-2)
     table = np.concatenate([theta[None], theta + np.diag(steps), theta - np.diag(steps)])
-    sets = {name: table[:, k] for k, name in enumerate(free)}
-    sets |= {name: np.full(len(table), float(value)) for name, value in held.items()}
-    values = np.broadcast_to(one.of(sets), len(table))
+    values = np.broadcast_to(of(table), len(table))
+    return float(values[0]), (values[1 : 1 + theta.size] - values[1 + theta.size :]) / (2.0 * steps)
+
+
+def _combined(one: Combination, theta: FloatArray, held: Mapping[str, float], free: Sequence[str]) -> ShipNumber:
+    """Return a combination of the parameters."""
+
+    def of(table: FloatArray) -> FloatArray:
+        sets = {name: table[:, k] for k, name in enumerate(free)}
+        return one.of(sets | {name: np.full(len(table), float(value)) for name, value in held.items()})
+
+    value, slope = value_and_slope(of, theta)
     return ShipNumber(
         name=one.name,
         unit=one.unit,
-        value=float(values[0]),
-        slope=(values[1 : 1 + theta.size] - values[1 + theta.size :]) / (2.0 * steps),
+        value=value,
+        slope=slope,
         meaning=one.meaning,
         role=one.role,
     )

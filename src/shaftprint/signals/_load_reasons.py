@@ -45,7 +45,7 @@ def torque_beside_file(points: Sequence["WorkingPoint"], vessel: "Vessel") -> st
     found = _beside(points, vessel)
     if found is None or found[1] <= FAR:
         return ""
-    return f"channel {vessel.sensors.shaft_torque.channel}: {_in_words(points, vessel, *found)}."
+    return f"channel {vessel.sensors.shaft_torque.channel}: {_in_words(points, vessel, found[1])}."
 
 
 def torque_to_look_at(points: Sequence["WorkingPoint"], vessel: "Vessel") -> str:
@@ -59,7 +59,7 @@ def torque_to_look_at(points: Sequence["WorkingPoint"], vessel: "Vessel") -> str
         return ""
     if found[1] > FAR or found[0] <= math.log(LARGEST_BY_DAY):
         return ""
-    return f"The torque is none that the vessel file lets expect: {_in_words(points, vessel, *found)}."
+    return f"The torque is none that the vessel file lets expect: {_in_words(points, vessel, found[1])}."
 
 
 def _beside(points: Sequence["WorkingPoint"], vessel: "Vessel") -> tuple[float, float] | None:
@@ -77,7 +77,7 @@ def _beside(points: Sequence["WorkingPoint"], vessel: "Vessel") -> tuple[float, 
     return min(abs(log) for log in logs), min(away)
 
 
-def _in_words(points: Sequence["WorkingPoint"], vessel: "Vessel", _: float, away: float) -> str:
+def _in_words(points: Sequence["WorkingPoint"], vessel: "Vessel", away: float) -> str:
     point, load = points[0], load_over_expected(points[0], vessel)
     found_nm = vessel.working_point.turning * point.shaft_torque_nm
     further = "".join(
