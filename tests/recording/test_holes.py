@@ -87,3 +87,19 @@ def test_a_wrong_time_does_not_fill_the_memory():
     times[4000:] += 1e9
     with pytest.raises(RecordingError, match=r"expected a step of 1 s, found 1e\+09 s before row 4001"):
         clock_of(times)
+
+
+# 1000 rows at 100 Hz, printed to 0.1 ms; what is odd stands within the last rows, or is the first
+@pytest.mark.parametrize(
+    "times",
+    [
+        pytest.param(lambda t: np.r_[t[:-1], t[-1] + 0.004], id="the last is late"),
+        pytest.param(lambda t: np.r_[t[0] + 0.004, t[1:]], id="the first is late"),
+        pytest.param(lambda t: np.r_[t[:-3], t[-3:] + 0.004], id="the last three are late"),
+        pytest.param(lambda t: np.sort(np.r_[t, t[-5] + 0.0045]), id="one is put between two others"),
+        pytest.param(lambda t: np.sort(np.r_[t, t[-5] + 0.005]), id="one is put half way between two others"),
+    ],
+)
+def test_a_stray_row_at_an_end_does_not_tilt_the_rate(tmp_path, times):
+    with read_recording(csv(tmp_path, times(0.01 * np.arange(1000.0)), digits=4)) as recording:
+        assert recording.channel("a").rate_hz == 100.0

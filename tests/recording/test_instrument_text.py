@@ -37,7 +37,7 @@ LAYOUTS = {
         "X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,0.000000e+00,1.000000e-02\n" + _rows("{i},{u:.4e},{y:.6e},\n"),
         ("V", "V"),
     ),
-    "rigol new": ("CH1V,CH2V,t0 = 0.0e+00, tInc = 1.000000e-02,\n" + _rows("{u:.4e},{y:.6e},,,\n"), ("", "")),
+    "rigol new": ("CH1V,CH2V,t0 = 0.0e+00, tInc = 1.000000e-02,\n" + _rows("{u:.4e},{y:.6e},,,\n"), ("V", "V")),
     "siglent": ("Sample Interval,0.01\nVertical Units,CH1:V\nSource,CH1,CH2\nSecond,Volt,Volt\n" + _rows("{t:.7f},{u},{y}\n"), ("V", "V")),
     "lecroy": ("LECROYWR,1,Waveform\nSegments,1,SegmentSize,120\nSegment,TrigTime,TimeSinceSegment1\n#1,05-Mar-2026 09:00:00,0\nTime,C1,C2\n" + _rows("{t:.8f},{u},{y}\n"), ("", "")),
     "tektronix": (
@@ -407,3 +407,44 @@ def test_the_rate_above_the_rows_places_those_that_have_one_stamp(tmp_path):
     # 50 Hz is not what 100 rows with each stamp have
     with pytest.raises(RecordingError, match="about 100 rows with each stamp"):
         _read(tmp_path, head.replace("0,01", "0,02") + rows)
+
+
+def test_a_stated_rate_that_the_times_contradict_is_named(tmp_path):
+    """0.1 % is more than clocks are apart; what a step printed with three figures leaves open is none."""
+    times = "".join(f"{k / 1024:.6f},{k % 7}\n" for k in range(2000))
+    recording, _ = _read(tmp_path, f"Sample rate,1025,Hz\ntime [s],y\n{times}")
+    assert recording.remarks == ("column time: a rate of 1024 Hz, which counts; the lines above say 1025 Hz.",)
+    for stated in ("Sample rate,1024,Hz", "Sample interval,9.77E-04", "Sample rate,1.0E+03,Hz"):
+        recording, _ = _read(tmp_path, f"{stated}\ntime [s],y\n{times}")
+        assert recording.remarks == ()
+
+
+def test_a_unit_behind_the_channel_of_an_oscilloscope(tmp_path):
+    recording, _ = _read(tmp_path, "Time(s),CH1V,CH2A\n" + _rows("{t:.2f},{u},{y}\n"))
+    assert [(name, one.unit) for name, one in recording.channels.items()] == [("CH1", "V"), ("CH2", "A")]
+
+
+def test_titles_over_three_rows_say_place_quantity_and_unit(tmp_path):
+    """As VCDS writes them; a quantity that is called a value, beside a column of words, is no row of one signal."""
+    places, quantities, units = (
+        f"Marker,{','.join(row)},\n"
+        for row in (
+            [f"TIME,Loc. IDE{k:05}" for k in range(11)],
+            ["STAMP,NOx sensor", *(f"STAMP,Quantity {k}: value" for k in range(1, 2)), *(9 * ["STAMP,Engine speed"])],
+            [", ", *(10 * [", /min"])],
+        )
+    )
+    quantities = quantities.replace("Marker", "", 1)
+    for k in range(9):
+        quantities = quantities.replace("Engine speed", f"engine speed {k}", 1)
+    units = units.replace("Marker", "", 1)
+    rows = "".join(
+        f",{0.3 * k:.2f},{'A/0' if k // 3 % 2 else 'B/1'},"
+        + ",".join(f"{0.3 * k:.2f},{k + n}" for n in range(10))
+        + ",\n"
+        for k in range(60)
+    )
+    recording, _ = _read(tmp_path, f"Monday,1\n{places}{quantities}{units}{rows}")
+    expected = ["Loc. IDE00001 Quantity 1: value", *(f"Loc. IDE{k + 2:05} engine speed {k}" for k in range(9))]
+    assert list(recording.channels) == expected
+    assert {one.unit for one in recording.channels.values()} == {"/min"}

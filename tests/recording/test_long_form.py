@@ -119,7 +119,10 @@ def test_units_may_stand_two_rows_below_the_titles(tmp_path):
     rows = "".join(f",{0.5 * k:.2f},{k},{0.5 * k + 0.1:.2f},{k % 3},\n" for k in range(COUNT))
     head = "Marker,TIME,Loc. IDE1,TIME,Loc. IDE2,\n,STAMP,Engine RPM,STAMP,Engine torque,\n,, /min,, Nm,\n"
     with _read(tmp_path, head + rows) as recording:
-        assert {name: one.unit for name, one in recording.channels.items()} == {"Loc. IDE1": "/min", "Loc. IDE2": "N m"}
+        assert {name: one.unit for name, one in recording.channels.items()} == {
+            "Loc. IDE1 Engine RPM": "/min",
+            "Loc. IDE2 Engine torque": "N m",
+        }
 
 
 def test_equal_titles_are_told_apart_by_what_stands_behind_their_units(tmp_path):

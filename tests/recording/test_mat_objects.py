@@ -8,6 +8,7 @@ from datetime import datetime
 import numpy as np
 import pandas as pd
 import pytest
+import scipy.io
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording import read_recording
@@ -117,3 +118,64 @@ def test_without_the_library_the_remedy_is_that_of_the_class(save, monkeypatch):
         read_recording(timetable)
     with pytest.raises(RecordingError, match=r'pip install "shaftprint\[readers\]" reads it.*table2struct\(tab'):
         read_recording(table)
+
+
+_IDDATA = (
+    "Domain", "Name", "OutputData", "OutputName", "OutputUnit", "InputData", "InputName", "InputUnit", "Period",
+    "InterSample", "Ts", "Tstart", "SamplingInstants", "TimeUnit", "ExperimentName", "Notes", "UserData",
+)  # fmt: skip
+
+
+def _cell(*of_experiments):
+    cells = np.empty((len(of_experiments), 1), dtype=object)
+    cells[:, 0] = list(of_experiments)
+    return cells
+
+
+def _iddata(path, **properties):
+    """Write an object of the System Identification Toolbox, which MATLAB keeps as a structure with a class."""
+    empty = np.empty((0, 0))
+    told = {"Domain": "Time", "TimeUnit": "seconds", **properties}
+    record = np.empty((1, 1), dtype=[(key, object) for key in _IDDATA])
+    record[0, 0] = tuple(told.get(key, empty) for key in _IDDATA)
+    scipy.io.savemat(path, {"bench": scipy.io.matlab.MatlabObject(record, "iddata")})
+    return path
+
+
+def test_iddata_are_read_with_their_names_units_and_rates(tmp_path):
+    both = np.column_stack([TORQUE, 2.0 * TORQUE])
+    path = _iddata(
+        tmp_path / "one.mat",
+        OutputData=_cell(both), OutputName=_cell("torque", "speed"), OutputUnit=_cell("Nm", "rpm"),
+        InputData=_cell(3.0 * TORQUE[:, np.newaxis]), InputName=_cell("u1"), InputUnit=_cell(""),
+        Ts=_cell(4.0), Tstart=_cell(12.0), SamplingInstants=_cell(np.empty((COUNT, 0))), TimeUnit="milliseconds",
+    )  # fmt: skip
+    with read_recording(path) as recording:
+        said = [(name, one.unit, one.rate_hz, one.start_s) for name, one in recording.channels.items()]
+        assert said == [("torque", "N m", 250.0, 0.012), ("speed", "rpm", 250.0, 0.012), ("u1", "", 250.0, 0.012)]
+        assert np.array_equal(recording.channel("speed").values(0, COUNT), 2.0 * TORQUE)
+        assert np.array_equal(recording.channel("u1").values(0, COUNT), 3.0 * TORQUE)
+
+
+def test_experiments_of_iddata_keep_their_own_times(tmp_path):
+    instants = 0.1 * np.arange(COUNT)[:, np.newaxis]
+    path = _iddata(
+        tmp_path / "two.mat",
+        OutputData=_cell(TORQUE[:, np.newaxis], TORQUE[:50, np.newaxis]), OutputName=_cell("y1"),
+        InputData=_cell(np.empty((COUNT, 0)), np.empty((50, 0))),
+        Ts=_cell(np.empty((0, 0)), 0.02), Tstart=_cell(np.empty((0, 0)), np.empty((0, 0))),
+        SamplingInstants=_cell(instants, np.empty((50, 0))),
+    )  # fmt: skip
+    with read_recording(path) as recording:
+        said = [(name, round(one.rate_hz, 6), one.count) for name, one in recording.channels.items()]
+    assert said == [("bench(1).y1", 10.0, COUNT), ("bench(2).y1", 50.0, 50)]
+
+
+def test_other_objects_of_matlab_are_refused_with_what_to_save(tmp_path):
+    path = _iddata(tmp_path / "frd.mat", Domain="Frequency", OutputData=_cell(TORQUE[:, np.newaxis]))
+    with pytest.raises(RecordingError, match="bench: expected samples in time, found an iddata of frequencies"):
+        read_recording(path)
+    record = np.zeros((1, 1), dtype=[("num", object)])
+    scipy.io.savemat(path, {"model": scipy.io.matlab.MatlabObject(record, "idtf")})
+    with pytest.raises(RecordingError, match="found a MATLAB idtf, which only MATLAB can open; save the vectors"):
+        read_recording(path)

@@ -12,6 +12,7 @@ from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, ClockJump, Times
 from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S
+from shaftprint.recording.readers._steady_step import without_stray_ends
 
 _BLOCK = 1_000_000
 _Key = TypeVar("_Key", bound=Hashable)
@@ -35,6 +36,8 @@ _MOST_DECIMALS, _PRINTED = 6, 1e-3
 _FEWEST_DIGITS, _MOST_DIGITS, _LONGEST_ROUNDED, _RATE_DIGITS = 3, 6, 10_000_000, 6
 # With fewer times a sender is not known; of one, most steps are near its period.
 _FEWEST_MESSAGES, _MOST_NEAR = 100, 0.5
+# Where more than this part of them are equal, the others are none of the sender's.
+_MOST_SAME = 0.95
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -192,17 +195,21 @@ def _message_clock(count: int, read: Times) -> SampleClock | None:
     step = float(np.median(np.diff(read(0, min(count, _BLOCK)))))
     if not step > 0.0:
         return None
-    near, seconds = 0, 0.0
+    near, seconds, same, same_s = 0, 0.0, 0, 0.0
     for start in range(0, count - 1, _BLOCK):
         steps = np.diff(read(start, min(start + _BLOCK + 1, count)))
         # written so that a time that is not a number counts as wrong
         if not np.all(steps >= 0.0):
             return None
-        usual = np.abs(steps - step) <= _STEP_TOLERANCE * step
+        usual, equal = (np.abs(steps - step) <= share * step for share in (_STEP_TOLERANCE, _WHOLE))
         near, seconds = near + int(np.count_nonzero(usual)), seconds + float(steps[usual].sum())
+        same, same_s = same + int(np.count_nonzero(equal)), same_s + float(steps[equal].sum())
     first, last = float(read(0, 1)[0]), float(read(count - 1, count)[0])
     if near < _MOST_NEAR * (count - 1) or (last - first) * near > 2.0 * count * seconds:
         return None
+    if same > _MOST_SAME * near:
+        # a row that was put between two others says nothing of the period
+        near, seconds = same, same_s
     return SampleClock(rate_hz=float(f"{near / seconds:.6g}"), start_s=first, stamps=read, is_uneven=True)
 
 
@@ -235,7 +242,7 @@ def uniform_clock(path: Path, name: str, count: int, read: Times) -> SampleClock
     """Return the clock of a column of times, which must be uniform but for a few holes.
 
     The rate is the number of steps over the whole time, rounded to nine digits because printed times are
-    rounded too.
+    rounded too. Where the first time or the last is a stray, the others give it.
 
     ``path``, ``name``: file and column, for messages. ``count``: number of times. ``read``: gives the times [start,
     stop) [s]. Raises RecordingError if there are fewer than two times, or steps are not the others' at more places than
@@ -266,16 +273,20 @@ def _uniform_clock(
     missing = np.cumsum([0, *(hole.missing for hole in holes)])
     jumped = np.cumsum([0.0, *(hole.jump_s for hole in holes)])
     mean_step = (last - float(jumped[-1]) - first) / (count - 1 + int(missing[-1]))
+
+    def even(start: int, stop: int) -> tuple[FloatArray, FloatArray]:
+        """Return the places of rows on the clock, and their times without jumps."""
+        places, times = np.arange(start, stop, dtype=np.float64), read(start, stop)
+        if not holes:
+            return places, times
+        stretch = np.searchsorted(rows, places, side="right") - 1
+        return places + missing[stretch], times - jumped[stretch]
+
+    first, mean_step = without_stray_ends(count, even, first, mean_step)
     squares = total = 0.0
     for start in range(0, count, _BLOCK):
-        stop = min(start + _BLOCK, count)
-        row = np.arange(start, stop)
-        away = read(start, stop)
-        if holes:
-            stretch = np.searchsorted(rows, row, side="right") - 1
-            row += missing[stretch]
-            away = away - jumped[stretch]
-        away = away - (first + mean_step * row)
+        places, away = even(start, min(start + _BLOCK, count))
+        away = away - (first + mean_step * places)
         squares, total = squares + float(away @ away), total + float(away.sum())
         off = np.abs(away)
         worst = int(np.argmax(off))

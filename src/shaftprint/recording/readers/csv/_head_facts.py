@@ -44,6 +44,8 @@ class HeadFacts:
     """Second of the first row [s]."""
     source: str = ""
     """The field from which the rate is."""
+    rounded: float = 0.0
+    """By how much of itself the rate may be off, as it is printed."""
 
 
 def head_facts(lines: Sequence[str], delimiter: str) -> HeadFacts:
@@ -51,21 +53,29 @@ def head_facts(lines: Sequence[str], delimiter: str) -> HeadFacts:
 
     ``lines``: the lines above the rows of numbers, the titles among them. ``delimiter``: what stands between fields.
     """
-    rate_hz, start_s, source = None, 0.0, ""
+    rate_hz, start_s, source, rounded = None, 0.0, "", 0.0
     for key, unit, value in _pairs(lines, delimiter):
         match = _VALUE.fullmatch(value)
         if match is None:
             continue
         number, word = float(match[1].replace(",", ".")), match[2] or unit
         if key in _RATES and number > 0.0 and word.lower() in _HERTZ and rate_hz is None:
-            rate_hz, source = number * _HERTZ[word.lower()], key
+            rate_hz, source, rounded = number * _HERTZ[word.lower()], key, _rounded(match[1], number)
         elif key in _STEPS and number > 0.0 and rate_hz is None:
             second = seconds_in(word) if word else 1.0
             if second is not None:
                 rate_hz, source = float(f"{1.0 / (number * second):.9g}"), key
+                rounded = _rounded(match[1], number)
         elif key in _STARTS:
             start_s = number * ((seconds_in(word) if word else 1.0) or 0.0)
-    return HeadFacts(rate_hz=rate_hz, start_s=start_s, source=source)
+    return HeadFacts(rate_hz=rate_hz, start_s=start_s, source=source, rounded=rounded)
+
+
+def _rounded(printed: str, number: float) -> float:
+    """Return by how much of itself a printed number may be off: half its last decimal; a whole one is meant so."""
+    mantissa, _, exponent = printed.lower().replace(",", ".").partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    return 0.5 * 10.0 ** (int(exponent or 0) - decimals) / number if decimals or exponent else 0.0
 
 
 def plain_key(text: str) -> str:

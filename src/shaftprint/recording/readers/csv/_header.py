@@ -98,6 +98,8 @@ class Header:
     """Sample rate that the lines above the titles give, where there are no times [Hz]."""
     stated_rate_hz: float | None = None
     """The same beside times, which may be rounded or without a unit [Hz]."""
+    stated_rounded: float = 0.0
+    """By how much of itself it may be off, as it is printed."""
     start_s: float = 0.0
     """Second of the first row that they give [s]."""
     began: datetime | None = None
@@ -213,6 +215,7 @@ def read_header(
         dates_beside=times.dates_beside,
         rate_hz=facts.rate_hz if times.place is None else None,
         stated_rate_hz=None if times.place is None else facts.rate_hz,
+        stated_rounded=facts.rounded,
         start_s=facts.start_s + _skipped(table, names) / (facts.rate_hz or np.inf) if times.place is None else 0.0,
         began=began_of_export(lines[: table.first]),
         head=frozenset(line.strip() for line in lines[: table.first] if line.strip()),

@@ -36,6 +36,8 @@ _FUSED = re.compile(r"(tag|var|signal|channel|sensor|node|point|item|entity|mess
 # titles of the bytes of a frame: D0, Data1, Byte 0
 _BYTES = re.compile(r"(?<![A-Za-z])(data|d|b|byte)[ _]?[01](?!\d)", re.IGNORECASE)
 _HEAD, _SHOWN, _MOST = 30, 80, 0.9
+# Beside the values rows of one signal each have times, codes, places at most; more are signals in columns.
+_MOST_NUMBERS = 8
 _BESIDE_VALUES = (
     (
         re.compile(r"\b[A-Za-z_]+\s?[:=]\s?[+-]?\d"),
@@ -70,7 +72,7 @@ def expect_a_column_a_signal(path: Path, table: Table, names: Sequence[str]) -> 
     """
     words = [_words(name) for name in names]
     values = [place for place, of_name in enumerate(words) if of_name & _VALUES and not of_name & _OTHERWISE]
-    if len(values) != 1 or table.kinds[values[0]] != NUMBER:
+    if len(values) != 1 or table.kinds[values[0]] != NUMBER or table.kinds.count(NUMBER) > _MOST_NUMBERS:
         return
     for place, of_name in enumerate(words):
         may_be = of_name & _SIGNALS and not of_name & _OTHERWISE and place != values[0]

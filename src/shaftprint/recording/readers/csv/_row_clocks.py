@@ -11,7 +11,7 @@ from shaftprint.arrays import IntArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._spool import Spool
-from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
+from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock, printed_step
 from shaftprint.recording.readers._coarse_stamps import clock_of_stamps
 from shaftprint.recording.readers._gather import names_in_words
 from shaftprint.recording.readers._hints import OF_HINT, expect_one_rate
@@ -33,6 +33,8 @@ _HOUR_S, _SUNDAY, _BEFORE = 3600.0, 6, 4
 _RATE_AGREEMENT = 1e-3
 # programs round the rate that they write above the rows
 _STATED_AGREEMENT = 0.02
+# How far the clock of a computer and that of a sampler may be apart without a word, and how many times are looked at.
+_CLOCKS, _TIMES = 3e-4, 1000
 # A stamp to the second that so many rows have tells their rate, where the caller does not.
 _STAMPS = 5_000
 
@@ -230,12 +232,18 @@ def _clock(
         return clock, f"{name}: {each}; the rows are placed by the rate of {clock.rate_hz:g} Hz{lost}."
     if rate_hz is not None:
         expect_one_rate(path, {name: clock.rate_hz, OF_HINT: rate_hz}, _RATE_AGREEMENT)
-    if stated_hz and rate_hz is None and abs(clock.rate_hz / stated_hz - 1.0) > _STATED_AGREEMENT:
-        return clock, f"{name}: a rate of {clock.rate_hz:g} Hz, which counts; the lines above say {stated_hz:g} Hz."
+    if stated_hz and rate_hz is None and abs(clock.rate_hz / stated_hz - 1.0) > _allowed(header, clock, read, count):
+        return clock, f"{name}: a rate of {clock.rate_hz:.6g} Hz, which counts; the lines above say {stated_hz:.6g} Hz."
     doubled = sum(hole.missing < 0 for hole in clock.holes)
     if doubled:
         return clock, f"{name}: {doubled} rows have the time of the row before, as at events, and count in its place."
     return clock, _change_of_hour(name, clock, read, done)
+
+
+def _allowed(header: Header, clock: SampleClock, read: Times, count: int) -> float:
+    """Return how far the rate of the times and the stated one may be apart without a word, by how both are printed."""
+    some = read(0, min(count, _TIMES))
+    return _CLOCKS + header.stated_rounded + printed_step(some) * clock.rate_hz / count
 
 
 def _change_of_hour(name: str, clock: SampleClock, read: Times, done: Unpacked) -> str:

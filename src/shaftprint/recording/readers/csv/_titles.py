@@ -16,6 +16,8 @@ from shaftprint.units import plain_unit
 _SPACED_TITLE = re.compile(r"\S+(?:\s*[\[(][^\])]*[\])])?")
 # what stands alone above the rows: [data]
 _SECTION = re.compile(r"\[[A-Za-z][A-Za-z ]{2,}\]")
+# the unit behind the channel of an oscilloscope: CH1V
+_OF_A_SCOPE = re.compile(r"(?P<name>CH\d+)(?P<unit>V|A)")
 _BEHIND_A_WORD = re.compile(r"(?P<name>.*?)\s*(?:\bin\b|/|,)\s*(?P<unit>\S+(?: m)?)")
 # What stands in brackets behind a variable of a co-simulation: its number, its type and what it is.
 _OF_A_VARIABLE = re.compile(
@@ -73,8 +75,26 @@ def titles_and_units(lines: Sequence[str], table: Table) -> tuple[list[str], lis
     place = _place_of_titles(rows)
     # words may stand between titles and units
     units = next((row for row in reversed(rows[:place]) if _are_units(row, rows[place])), _of_scope(above, table))
+    has_units = any(row is units for row in rows[:place])
+    between = [row for row in rows[1 : place if has_units else 1] if row is not units]
+    if len(between) == 1 and _are_names(between[0], rows[place]):
+        return _joined(rows[place], between[0]), [_unit(field) for field in units]
     return _with_words(rows[place], [row for row in rows[:place] if row is not units]), [
         _unit(field) for field in units
+    ]
+
+
+def _are_names(row: Sequence[str], titles: Sequence[str]) -> bool:
+    """Return whether a row between titles and units says what each channel is: its place above, its quantity below."""
+    words = [word for word, title in zip(row, titles, strict=True) if title and word and not is_time_title(title)]
+    channels = sum(bool(title) and not is_time_title(title) for title in titles)
+    is_word = all(len(word) > 1 and not is_number(word) for word in words)
+    return is_word and len(words) > 1 and len(set(words)) == len(words) >= channels - 1
+
+
+def _joined(titles: Sequence[str], words: Sequence[str]) -> list[str]:
+    return [
+        title if is_time_title(title) else f"{title} {word}".strip() for title, word in zip(titles, words, strict=True)
     ]
 
 
@@ -88,10 +108,7 @@ def _of_scope(above: Sequence[str], table: Table) -> list[str]:
 def _with_words(titles: list[str], below: Sequence[Sequence[str]]) -> list[str]:
     """Return titles, of which several are equal with the words of a row below them: device above, quantity below."""
     for row in below if len(set(titles)) < len(titles) else ():
-        joined = [
-            title if is_time_title(title) else f"{title} {word}".strip()
-            for title, word in zip(titles, row, strict=True)
-        ]
+        joined = _joined(titles, row)
         if len(set(joined)) == len(joined) and not any(map(is_number, row)):
             return joined
     return titles
@@ -239,6 +256,9 @@ def name_and_unit(title: str) -> tuple[str, str]:
             # behind the unit: Temp, °C (LGR S/N: 1)
             return name_and_unit(match["name"])
         return match["name"].strip(), "" if _OF_A_VARIABLE.fullmatch(inside) else plain_unit(inside)
+    scope = _OF_A_SCOPE.fullmatch(text)
+    if scope is not None:
+        return scope["name"], scope["unit"]
     behind = _BEHIND_A_WORD.fullmatch(text)
     if behind is not None and behind["unit"].strip() not in _LETTER_UNITS and _is_unit(behind["unit"]):
         return behind["name"].strip(), plain_unit(behind["unit"])

@@ -1,4 +1,4 @@
-"""Objects in MATLAB files, which mat-io opens: timetables, tables, series, durations and dates become vectors."""
+"""Objects in MATLAB files, which mat-io opens: timetables, tables, series, iddata, durations, dates become vectors."""
 
 import importlib
 import warnings
@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.recording.readers._vectors import LOCAL, Vector
+from shaftprint.recording.readers.matlab._iddata import KIND, keep_iddata
 from shaftprint.recording.readers.matlab._variables import MatVariables, object_reason
 
-_READ = ("timetable", "table", "duration", "datetime", "timeseries")
+_READ = ("timetable", "table", "duration", "datetime", "timeseries", KIND)
 _NUMBERS = "fiub"
 
 
@@ -32,6 +33,8 @@ def keep_objects(path: Path, kinds: Mapping[str, str], variables: MatVariables) 
             _keep_table(name, value, variables, is_zoned=is_zoned)
         elif isinstance(value, np.ndarray) and value.dtype.kind in "mM" and value.size > 1:
             variables.vectors.append(_vector(name, "", value.ravel(), "", is_zoned=is_zoned))
+        elif kind == KIND and value is not None:
+            keep_iddata(name, value, variables)
         elif kind == "timeseries" and (series := _properties(value)):
             _keep_series(name, series, variables)
         else:

@@ -96,8 +96,19 @@ def object_reason(name: str, kind: str) -> str:
                 f"{reason}; {_INSTALL} reads it, or in MATLAB: s = table2struct({name}, 'ToScalar', true); "
                 "save('plain.mat', '-struct', 's')."
             )
+        case "iddata":
+            return (
+                f"{reason}; {_INSTALL} reads it, or in MATLAB: s = struct('t', {name}.SamplingInstants, 'y', {name}.y, "
+                f"'u', {name}.u); save('plain.mat', '-struct', 's')."
+            )
         case "function" | "function_handle" | "inline":
             return f"{reason}."
+        case "timetable" | "object":
+            return _of_timetable(name, reason)
+    return f"{reason}; save the vectors of numbers in it, with the times or the rate, as variables of their own."
+
+
+def _of_timetable(name: str, reason: str) -> str:
     return (
         f"{reason}; {_INSTALL} reads a timetable, or in MATLAB: "
         f"s = struct('t', seconds({name}.Properties.RowTimes - {name}.Properties.RowTimes(1))); "
