@@ -251,3 +251,16 @@ def test_a_damaged_file_is_refused_in_one_sentence(path, old, new, said):
     path.write_bytes(content.replace(old, new))
     with pytest.raises(RecordingError, match=said):
         read_recording(path)
+
+
+def test_zeros_that_a_text_editor_made_blanks_are_told(path):
+    """Of counts nobody can tell; a float of four blanks is 1.4e-19, which no logger stores."""
+    numbers = np.where(np.arange(SPEED.size) % 7, SPEED + np.float32(0.1), 0.0).astype("<f4")
+    parts = [component(1, 4, 2, 0, 1200), component(2, 7, 4, 1200, numbers.nbytes, names=[(0, "n", "")])]
+    content = COUNTS.tobytes() + numbers.tobytes()
+    write_imc(path, field(), parts[0], field(), parts[1], samples=content.replace(b"\0", b" "))
+    with pytest.raises(RecordingError, match="found blanks in the place of all zeros, as where a text editor"):
+        read_recording(path)
+    write_imc(path, field(), parts[0], field(), parts[1], samples=content)
+    with read_recording(path) as recording:
+        assert recording.channel("n").values(0, 2) == pytest.approx(numbers[:2])

@@ -369,3 +369,16 @@ def test_an_element_longer_than_its_variable_is_damage(tmp_path):
     path.write_bytes(content.replace(tag, struct.pack("<2I", 9, 80 * TORQUE.size)))
     with pytest.raises(RecordingError, match=r"expected an element of a variable at byte .*, found type 9, "):
         read_recording(path)
+
+
+def test_a_text_that_scipy_cannot_read_costs_itself_alone(tmp_path):
+    """A character beyond 65535 is two units of UTF-16, and SciPy expects as many bytes as there are characters."""
+    path = tmp_path / "log.mat"
+    scipy.io.savemat(path, {"t": TIME, "M_s": TORQUE, "note": "ab"})
+    # the element of the text says three characters where there are two
+    content = path.read_bytes()
+    at = content.rindex(b"\x01\0\0\0\x02\0\0\0")
+    path.write_bytes(content[: at + 4] + b"\x09" + content[at + 5 :])
+    with read_recording(path) as recording:
+        assert list(recording.channels) == ["M_s"]
+        assert recording.left_out["note"] == "expected a text, found characters that SciPy cannot read."

@@ -119,3 +119,66 @@ def test_rows_of_a_loggers_events_are_left_out(tmp_path, step_s):
 def test_milliseconds_of_a_day_of_an_electric_drive(tmp_path):
     with _read(tmp_path, "ms_today;erpm;\n" + _rows(0.1, "{k}00;{n};")) as recording:
         assert recording.channels["erpm"].rate_hz == 10.0
+
+
+def _columns(tmp_path, titles, *columns):
+    rows = (";".join(fields) + "\n" for fields in zip(*columns, strict=True))
+    times = [f"{0.1 * k:.1f}".replace(".", ",") for k in range(COUNT)]
+    rows = "".join(f"{time};{row}" for time, row in zip(times, rows, strict=True))
+    with _read(tmp_path, f"time [s];{titles}\n{rows}") as recording:
+        values = {name: one.values(0, COUNT) for name, one in recording.channels.items()}
+        return values, dict(recording.left_out)
+
+
+SPEED = [f"{1500 + k}" for k in range(COUNT)]
+MOMENT = [f"{value:.2f}".replace(".", ",") for value in TORQUE]
+
+
+@pytest.mark.parametrize(
+    ("title", "good", "bad", "says"),
+    [
+        ("Status", "Good", "Bad", "Bad"),
+        ("Moment Quality", "Good", "Bad, Comm Failure", "Bad, Comm Failure"),
+        ("Quality", "192", "24", "24"),
+        ("Validity", "1", "0", "0"),
+    ],
+)
+def test_a_status_behind_a_value_says_whether_it_counts(tmp_path, title, good, bad, says):
+    states = [bad if k in (3, 40) else good for k in range(COUNT)]
+    values, left_out = _columns(tmp_path, f"Moment;{title};n;{title}", MOMENT, states, SPEED, COUNT * [good])
+    assert np.flatnonzero(np.isnan(values["Moment"])).tolist() == [3, 40]
+    assert np.array_equal(np.delete(values["Moment"], [3, 40]), np.delete(TORQUE, [3, 40]))
+    assert np.array_equal(values["n"], 1500.0 + K)
+    assert left_out["values of Moment"] == f"2 of 90 values are none: column {title} says {says}"
+
+
+def test_one_status_behind_all_values_says_it_of_all(tmp_path):
+    states = ["Bad" if k == 7 else "Good" for k in range(COUNT)]
+    values, left_out = _columns(tmp_path, "Moment;n;Quality", MOMENT, SPEED, states)
+    assert [np.flatnonzero(np.isnan(one)).tolist() for one in values.values()] == [[7], [7]]
+    assert {"values of Moment", "values of n"} < set(left_out)
+
+
+@pytest.mark.parametrize(
+    ("title", "first", "second"),
+    [("Status", "STOP", "RUN"), ("Status", "0", "1"), ("Status", "Error", "OK"), ("Quality", "0.5", "0.9")],
+)
+def test_the_status_of_a_plant_is_none_of_its_values(tmp_path, title, first, second):
+    states = [first if k < 5 else second for k in range(COUNT)]
+    values, _ = _columns(tmp_path, f"Moment;n;{title}", MOMENT, SPEED, [one.replace(".", ",") for one in states])
+    assert np.array_equal(values["Moment"], TORQUE)
+
+
+def test_where_rows_are_left_out_a_status_in_words_is_named_alone(tmp_path):
+    rows = "".join(f"{0.1 * k:.1f};{k}.5;{'Bad' if k == 7 else 'Good'}\n" for k in range(COUNT))
+    rows = rows.replace("5.0;50.5;Good\n", "5.0\n")
+    with _read(tmp_path, f"time [s];M;Quality\n{rows}") as recording:
+        assert np.flatnonzero(np.isnan(recording.channel("M").values(0, COUNT))).tolist() == [50]
+        assert recording.left_out["validity of M"].startswith("column Quality says Bad in 1 rows")
+
+
+def test_alarms_of_a_recorder_hide_no_units(tmp_path):
+    head = "Vendor,GRAPHTEC Corporation\nNumber,Date&Time,ms,CH1,Alarm1-10,AlarmOut\nNO.,Time,ms,Nm,A1234567890,A1234\n"
+    rows = _rows(0.01, "{k},{at:%Y/%m/%d %H:%M:%S},{ms},{y:+.2f},LLLLLLLLLL,LLLL")
+    with _read(tmp_path, head + rows) as recording:
+        assert [(name, one.unit) for name, one in recording.channels.items()] == [("CH1", "N m")]

@@ -68,3 +68,11 @@ def test_a_damaged_file_ends_in_one_sentence(tmp_path):
     path.write_text(path.read_text().replace("9.99999", "x.99999")[:-700])
     with pytest.raises(RecordingError, match="expected"):
         read_recording(path)
+
+
+def test_zeros_that_a_text_editor_made_blanks_are_told(tmp_path):
+    _read(tmp_path, _set(np.where(np.arange(500) % 9, VALUES, 0.0), binary=1)).close()
+    path = tmp_path / "log.uff"
+    path.write_bytes(path.read_bytes().replace(b"\0", b" "))
+    with pytest.raises(RecordingError, match="found blanks in the place of all zeros"):
+        read_recording(path)

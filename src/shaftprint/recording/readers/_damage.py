@@ -58,6 +58,20 @@ def short_reason(error: Exception) -> str:
     return " ".join(str(error).split())[:200] or type(error).__name__
 
 
+def expect_no_blanks(path: Path, content: bytes, width: int) -> None:
+    """Refuse binary floats behind a head of text that a text editor has saved: zeros have become blanks.
+
+    ``content``: numbers side by side. ``width``: bytes of each, 4 or 8. Raises RecordingError if there are numbers of
+    blanks alone, which are 1.4e-19 and 6e-154, and no byte of zeros.
+    """
+    whole = content[: len(content) // width * width]
+    if b"\0" not in whole and width * b" " in (whole[at : at + width] for at in range(0, len(whole), width)):
+        raise RecordingError(
+            f"{path}: expected binary numbers, found blanks in the place of all zeros, as where a text editor or a "
+            "mail program has saved the file; copy it again from the logger, as binary."
+        )
+
+
 def expect_plausible(
     path: Path, name: str, *, samples: int, sample_bytes: int, stored_bytes: int, is_packed: bool = True
 ) -> None:

@@ -14,7 +14,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
-from shaftprint.recording.readers._damage import told_as_damage
+from shaftprint.recording.readers._damage import expect_no_blanks, told_as_damage
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._hints import OF_HINT, expect_one_rate, rate_hint
@@ -92,6 +92,8 @@ def _is_cut(path: Path) -> bool:
         sizes = [count * width] if is_even else [count * (width + of_time) for of_time in (8, 4)]
         if is_cut and head.end() + min(sizes) > len(content):
             break
+        if is_even:
+            expect_no_blanks(path, content[head.end() : head.end() + sizes[0]], width)
         if not any(_END.match(content, head.end() + size) for size in sizes):
             raise RecordingError(
                 f"{path}: expected {sizes[0]} bytes of samples, as the head of a data set 58b says, found others; the "

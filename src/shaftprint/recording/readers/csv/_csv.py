@@ -28,6 +28,7 @@ from shaftprint.recording.readers.csv._long_form import expect_no_frames
 from shaftprint.recording.readers.csv._marks import first_row_of_zeros
 from shaftprint.recording.readers.csv._row_clocks import sampled, scale_of_rows
 from shaftprint.recording.readers.csv._rows import LONGEST_LINE, Unpacked, unpack
+from shaftprint.recording.readers.csv._validity import invalid_rows
 from shaftprint.recording.readers.imc._blocks import BEGIN as BEGIN_OF_IMC
 
 NAME = "CSV"
@@ -106,6 +107,13 @@ def read(path: Path, **hints: object) -> Recording:
                 done.remarks.append(f"{done.count - done.full} rows at the end without any value were left out.")
                 done.count = done.full
             done.remarks += [guessed] if guessed else []
+            if header.status:
+                read = {name: number for number, name in enumerate(header.names)}
+                with _text(path, encoding) as file:
+                    rows = islice(_lines(path, file), header.lines, None)
+                    done.invalid = invalid_rows(
+                        rows, header.delimiter, header.status, read, header.titles, spool, done.count, done.left_out
+                    )
             return _recording(path, sha256, header, spool, done, rate_hz or header.rate_hz, time_unit)
     except (UnicodeError, LookupError) as error:
         raise RecordingError(

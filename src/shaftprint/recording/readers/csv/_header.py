@@ -46,6 +46,7 @@ from shaftprint.recording.readers.csv._titles import (
     titles_and_units,
     told_apart_by_remarks,
 )
+from shaftprint.recording.readers.csv._validity import Status, status_columns
 from shaftprint.units import plain_unit
 
 # Titles of a column that counts the rows.
@@ -104,6 +105,10 @@ class Header:
     """Second of the first row that they give [s]."""
     began: datetime | None = None
     """Date of second 0 that they give."""
+    status: tuple[Status, ...] = ()
+    """Columns that say whether the values of others count."""
+    titles: tuple[str, ...] = ()
+    """Names of all columns."""
     head: frozenset[str] = frozenset()
     """The titles and the lines about them, without white space at their ends: they may come again."""
     left_out: dict[str, str] = field(default_factory=dict)
@@ -218,6 +223,8 @@ def read_header(
         stated_rounded=facts.rounded,
         start_s=facts.start_s + _skipped(table, names) / (facts.rate_hz or np.inf) if times.place is None else 0.0,
         began=began_of_export(lines[: table.first]),
+        status=status_columns(table, names, [place for place in kept if place != times.place]),
+        titles=tuple(names),
         head=frozenset(line.strip() for line in lines[: table.first] if line.strip()),
         left_out=left_out,
         remarks=_remarks(path, times, facts, has_rate=has_rate),

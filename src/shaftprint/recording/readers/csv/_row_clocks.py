@@ -26,6 +26,7 @@ from shaftprint.recording.readers.csv._filled_rows import (
 )
 from shaftprint.recording.readers.csv._header import Header
 from shaftprint.recording.readers.csv._rows import Unpacked
+from shaftprint.recording.readers.csv._validity import without
 
 # when clocks are changed for summer time
 _HOUR_S, _SUNDAY, _BEFORE = 3600.0, 6, 4
@@ -110,7 +111,7 @@ def sampled(
             own = further
             others += [name] if own != first else []
             continue
-        source, rows = spool.source(number), own
+        source, rows = without(spool.source(number), done.invalid.get(name)), own
         if events is not None:
             source = only(source, valued)
         elif own is first and read is not None and may_have_own_rows(done.filled[name], count):

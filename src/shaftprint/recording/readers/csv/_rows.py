@@ -11,7 +11,7 @@ from typing import IO, TypeAlias
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
 from shaftprint.recording._spool import Spool
@@ -62,6 +62,8 @@ class Unpacked:
     """Line of every head that comes again, and how many rows are before it."""
     date_beside: str = ""
     """The first date beside times that are numbers."""
+    invalid: dict[str, IntArray] = field(default_factory=dict)
+    """Rows whose value does not count, by column."""
 
 
 def unpack(path: Path, file: IO[bytes], header: Header, spool: Spool) -> Unpacked:

@@ -45,6 +45,8 @@ _UNIT_ROWS = ("vunit", "v unit", "unit", "units", "vert units", "vertical units"
 _REMARK = ": "
 _REMARKS = ("comment", "comments", "remark", "remarks")
 _SCOPE_UNITS = "vertical units"
+# what Graphtec writes below a number of rows and below alarms: NO., A1234567890
+_LABELS = re.compile(r"No\.|[A-Z]{1,2}12\d+", re.IGNORECASE)
 _TOA5, _TOA5_ROWS = ("TOA5", "TOB1"), 4
 
 
@@ -169,7 +171,11 @@ def _are_units(row: Sequence[str], above: Sequence[str]) -> bool:
     ):
         return False
     bracketed = [field for field in row if field[:1] in "[(" and field[-1:] in "])"]
-    words = [field for place, field in enumerate(row) if field and place != time and not is_number(field)]
+    words = [
+        field
+        for place, field in enumerate(row)
+        if field and place != time and not is_number(field) and _LABELS.fullmatch(field) is None
+    ]
     units = [field for field in words if field in bracketed or _is_unit(field)]
     of_time = row[time].strip("[]() ")
     is_of_time = seconds_in(of_time) is not None

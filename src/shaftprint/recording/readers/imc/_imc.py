@@ -93,6 +93,13 @@ class _Source:
             gathered.remarks.append(f"The date is the logger's own; the zone that it states ({stated}) was not added.")
         if not self.layout.is_closed:
             gathered.remarks.append("The file was not closed by its writer; what was measured last may be missing.")
+        for _, component, one in named:
+            try:
+                samples = samples_of(component, self.layout.stored, self.file, one.bit)
+            except RecordingError:
+                # it is left out below
+                continue
+            samples.expect_no_blanks(self.path)
         for (each, component, one), name in zip(named, names, strict=True):
             gathered.add(name, partial(self._channel, each, component, one, name, began))
         return gathered.recording(NAME, self.opened.close, began)

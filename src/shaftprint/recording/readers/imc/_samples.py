@@ -3,12 +3,14 @@
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
+from shaftprint.recording.readers._damage import expect_no_blanks
 from shaftprint.recording.readers.imc._layout import Component, Packing, Scale, Stored
 
 _COUNTS, _DIGITAL = 4, 11
@@ -16,6 +18,7 @@ _TYPES = {
     1: "u1", 2: "i1", 3: "<u2", _COUNTS: "<i2", 5: "<u4", 6: "<i4", 7: "<f4", 8: "<f8",
     _DIGITAL: "<u2", 12: "<u8", 13: "6u1", 14: "<i8",
 }  # fmt: skip
+_FLOATS, _LOOKED_AT = (7, 8), 100_000
 _OTHER_TYPES = {9: "a transitional recording", 10: "times as text"}
 
 
@@ -37,6 +40,16 @@ class Samples:
     def is_counts(self) -> bool:
         """Whether they are counts of 16 bits, which are read without their scale."""
         return self.packing.kind == _COUNTS and not self.packing.mask
+
+    def expect_no_blanks(self, path: Path) -> None:
+        """Refuse numbers in which zeros have become blanks, by the first of them.
+
+        Raises RecordingError if they have.
+        """
+        if self.packing.kind in _FLOATS and not self.packing.apart:
+            self.file.seek(self.begin)
+            content = self.file.read(min(self.count, _LOOKED_AT) * self.packing.size)
+            expect_no_blanks(path, content, self.packing.size)
 
     def read(self, start: int, stop: int) -> NDArray[Any]:
         """Return the samples [start, stop): counts of 16 bits as they are, others in their unit.

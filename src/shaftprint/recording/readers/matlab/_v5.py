@@ -109,7 +109,14 @@ def _survey(path: Path, headers: Iterable[MatHeader], spool: Spool, titles: tupl
         elif header.kind == "cell":
             variables.left_out[name] = cell_reason()
         elif header.size:
-            value = scipy.io.loadmat(path, variable_names=[name], struct_as_record=False, squeeze_me=True)[name]
+            try:
+                value = scipy.io.loadmat(path, variable_names=[name], struct_as_record=False, squeeze_me=True)[name]
+            except TypeError:
+                if header.kind != "char":
+                    raise
+                # texts with characters beyond 65535, as emoji
+                variables.left_out[name] = "expected a text, found characters that SciPy cannot read."
+                continue
             _keep(name, "", value, spool, variables)
     keep_objects(path, objects, variables)
     return variables
