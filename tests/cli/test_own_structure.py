@@ -120,8 +120,10 @@ def test_ties_go_through_the_whole_chain_and_lead_to_the_same_optimum(run, recor
     written(LOOP)
     options = ("--structure", "my_ship.py:my_loop", "--structure", "CL4", "--structure", "GAUGE-CORE")
     result = run("identify", recording, *GIVEN, *options, "-o", tmp_path / "tied")
-    assert result.exit_code == 0, result.stderr
+    assert result.exit_code == 3, result.stderr
     tied = read_fingerprint(tmp_path / "tied" / "fingerprint.json")
+    # the gauge of the tug lies between engine and propeller, which neither loop knows: no number is to be used
+    assert not tied.verdict.trustworthy
     table = result.output[result.output.index("All structures") :]
     assert all(name in table for name in ("MY/LOOP", "CL4", "GAUGE-CORE"))
     assert {"T_i", "log_tau"} <= {quantity.name for quantity in tied.parameters}
@@ -133,7 +135,7 @@ def test_ties_go_through_the_whole_chain_and_lead_to_the_same_optimum(run, recor
     figures = {path.stem for path in (tmp_path / "tied" / "plots").iterdir()}
     assert {"sensitivity_my-loop_1", "structures_5_3", "structures_gauge-core"} <= figures
 
-    assert run("identify", recording, *GIVEN, "--structure", "CL4", "-o", tmp_path / "plain").exit_code == 0
+    assert run("identify", recording, *GIVEN, "--structure", "CL4", "-o", tmp_path / "plain").exit_code == 3
     plain = read_fingerprint(tmp_path / "plain" / "fingerprint.json")
     for name in ("K_i", "tau_n", "t_d", "gain margin", "I"):
         assert tied.quantity(name).value == pytest.approx(plain.quantity(name).value, rel=1e-3), name

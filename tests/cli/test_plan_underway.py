@@ -41,8 +41,10 @@ def test_half_an_hour_of_dither_is_planned_for_the_ship_and_its_log(planned):
     known = {name: test.plan.predicted.estimate(name) for name in ("b", "(e - a) / tau_u", "(2 - a) / tau_u")}
     for one, share in zip(known.values(), (0.06, 0.03, 0.025), strict=True):
         assert one.std < share * abs(one.value)
+    # what the file promises is the middle of the possible ships
     content = json.loads((folder / "plan.json").read_text(encoding="utf-8"))
-    assert content["predicted"]["b"]["std"] == pytest.approx(known["b"].std, rel=1e-6)
+    promised = known["b"].std * test.plan.band.middle["b"]
+    assert content["predicted"]["b"]["std"] == pytest.approx(promised, rel=1e-6)
 
 
 @pytest.mark.long
@@ -60,6 +62,8 @@ def test_sailed_and_identified_it_gives_what_was_planned(planned, invoke, tmp_pa
             "(e - a) / tau_u": (truth["e"] - truth["a"]) / truth["tau_u"],
             "(2 - a) / tau_u": (2.0 - truth["a"]) / truth["tau_u"],
             "b (2 - a) / tau_u": truth["b"] * (2.0 - truth["a"]) / truth["tau_u"],
+            "K_p / K_i": truth["K_p"] / truth["K_i"],
+            "t_d + t_sp": truth["t_d"] + truth["t_sp"],
         }
         for one in (*found.parameters, *found.combinations):
             stated.setdefault(one.name, []).append(one.std)
@@ -75,7 +79,8 @@ def test_sailed_and_identified_it_gives_what_was_planned(planned, invoke, tmp_pa
     numbers = [name for name in known if name not in LEFT and name in stated and known[name] is not None]
     assert len(numbers) >= 12
     for name in numbers:
-        assert 0.75 < median(stated[name]) / known[name] < 1.35, name
+        # that of a quotient hangs on how its two numbers go together besides
+        assert (0.65 if name == "K_p / K_i" else 0.75) < median(stated[name]) / known[name] < 1.35, name
     assert max(abs(median(values)) for values in z.values()) < 2.5
 
 

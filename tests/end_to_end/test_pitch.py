@@ -61,6 +61,8 @@ def test_pitch_is_identified_from_the_raw_recording(tmp_path, tug):
         "b (2 - a) / tau_u": truth["b"] * (2.0 - truth["a"]) / truth["tau_u"],
         "(2 - a) / tau_u": (2.0 - truth["a"]) / truth["tau_u"],
         "p / tau_u": truth["p"] / truth["tau_u"],
+        "t_d + t_sp": truth["t_d"] + truth["t_sp"],
+        "K_p / K_i": truth["K_p"] / truth["K_i"],
         "c_set": 1.0,
         "t_gauge": 0.0,
     }

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from benchmarks.limits import CAMPAIGN, VESSEL, drawn
 from benchmarks.one_fit import CAMPAIGN as SHORT
@@ -60,8 +61,8 @@ def test_a_line_that_rests_near_its_torque_limit(limits_of):
     assert found.kinds == (Kind.TORQUE,)
     # 43 % below the curve of the vessel file, where a lack of air looks alike
     assert "below the full-load curve" in share.doubt
-    assert share.lower <= one.levels["share"] <= share.upper
-    assert share.upper - share.lower < 0.12 * one.levels["share"]
+    assert share.ends_95[0] <= one.levels["share"] <= share.ends_95[1]
+    assert np.ptp(share.ends_95) < 0.12 * one.levels["share"]
 
 
 @pytest.mark.long
@@ -70,8 +71,8 @@ def test_a_cycle_whose_phase_drifts_from_jump_to_jump(limits_of):
     one, found = limits_of(17)
     cycle = number(found, "T_set")
     assert Kind.HELD in found.kinds
-    assert cycle.lower <= one.levels["T_set"] <= cycle.upper
-    assert cycle.upper < 0.25
+    assert cycle.ends_95[0] <= one.levels["T_set"] <= cycle.ends_95[1]
+    assert cycle.ends_95[1] < 0.25
 
 
 @pytest.mark.long
@@ -80,9 +81,9 @@ def test_a_set_point_with_a_limited_rate(limits_of):
     one, found = limits_of(57)
     rate = number(found, "r_s_rpm")
     assert found.kinds == (Kind.RAMP,)
-    assert rate.trusted
-    assert rate.lower <= one.levels["r_s_rpm"] <= rate.upper
-    assert rate.upper - rate.lower < 0.05 * one.levels["r_s_rpm"]
+    assert not rate.doubt
+    assert rate.ends_95[0] <= one.levels["r_s_rpm"] <= rate.ends_95[1]
+    assert np.ptp(rate.ends_95) < 0.05 * one.levels["r_s_rpm"]
 
 
 @pytest.mark.long
@@ -91,9 +92,9 @@ def test_a_set_point_that_goes_on_in_steps(limits_of):
     _, found = limits_of(5, demand_cycle_s=None, demand_resolution_rpm=16.0)
     step = number(found, "q_rpm")
     assert found.kinds == (Kind.QUANTUM,)
-    assert step.trusted
-    assert step.lower <= 16.0 <= step.upper
-    assert step.upper - step.lower < 2.0
+    assert not step.doubt
+    assert step.ends_95[0] <= 16.0 <= step.ends_95[1]
+    assert np.ptp(step.ends_95) < 2.0
 
 
 @pytest.mark.long
@@ -101,8 +102,9 @@ def test_two_limits_that_hold_each_other_in_place_of_the_true_ones(both_torque_l
     """Seed 103: a slow set point joins first, then messages; neither goes alone, 2 log L 680 worse than the truth."""
     share, lowest_nm, found = both_torque_limits_of(103)
     assert set(found.kinds) == {Kind.TORQUE, Kind.MOTORING}
-    assert number(found, "share").lower <= share <= number(found, "share").upper
-    assert number(found, "M_min").lower <= lowest_nm <= number(found, "M_min").upper
+    for name, true in (("share", share), ("M_min", lowest_nm)):
+        lower, upper = number(found, name).ends_95
+        assert lower <= true <= upper, name
 
 
 @pytest.mark.long
@@ -121,7 +123,7 @@ def test_a_loaded_engine_without_air_gets_no_slow_set_point(tmp_path):
     found = identify_limits(signals, CAMPAIGN, vessel)
     assert set(found.kinds) == {Kind.SMOKE, Kind.MOTORING}
     air = number(found, "a_0")
-    assert air.lower <= 0.455 <= air.upper
-    assert air.upper - air.lower < 0.1
+    assert air.ends_95[0] <= 0.455 <= air.ends_95[1]
+    assert np.ptp(air.ends_95) < 0.1
     assert min(found.gains.values()) > 25.0
     assert not any(estimate.at_bound for estimate in found.governor)
