@@ -124,6 +124,8 @@ def test_a_loaded_engine_without_air_gets_no_slow_set_point(tmp_path):
     assert set(found.kinds) == {Kind.SMOKE, Kind.MOTORING}
     air = number(found, "a_0")
     assert air.ends_95[0] <= 0.455 <= air.ends_95[1]
-    assert np.ptp(air.ends_95) < 0.1
+    # the set point's line is hardly known beside a speed that falls behind it, and the interval says so
+    assert "fell behind the set point" in air.doubt
+    assert abs(air.value - 0.455) < 0.03
     assert min(found.gains.values()) > 25.0
     assert not any(estimate.at_bound for estimate in found.governor)

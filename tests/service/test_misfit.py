@@ -133,3 +133,12 @@ def test_what_is_too_small_to_matter_is_no_reason_however_long_the_service():
     )
     assert misfit.reason == ""
     assert replace(misfit, trends=(replace(trend, size=0.05),)).reason.startswith("the gains hang on the speed")
+
+
+@pytest.mark.parametrize(
+    ("deviations", "gain", "is_there"), [(2.5, 57.0, True), (2.6, 18.0, False), (1.4, 60.0, False)]
+)
+def test_a_trend_that_leaves_scatter_of_its_own_is_told_by_what_the_likelihood_gains(deviations, gain, is_there):
+    """A launch whose delay counts in turns: 2.5 deviations, 57 more likelihood, the sum of the delays 32 % long."""
+    trend = Trend(what="it", along="hangs", by="a", size=-0.01 * deviations, std=0.01, gain=gain, least=0.001)
+    assert trend.is_there is is_there

@@ -1,17 +1,13 @@
 """Where a fit begins: near enough to a line of whose governor nothing is known."""
 
 from dataclasses import replace
-from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from tests.service.test_misfit import records
 
-from shaftprint.errors import ServiceError
 from shaftprint.service._fit import fit_segments
 from shaftprint.service._model import FREE, service_model
-from shaftprint.service._service_fit import _expect_one_clock
 from shaftprint.service._start import begun
 from shaftprint.vessel import load_vessel
 
@@ -35,19 +31,3 @@ def test_a_governor_far_from_the_usual_one_is_found(model, gain, delay_s):
 def test_a_fingerprint_is_where_a_fit_begins(model):
     of_fingerprint = replace(model, is_of_fingerprint=True)
     assert begun(of_fingerprint, [None] * 20) is of_fingerprint
-
-
-@pytest.mark.parametrize(("t_d", "t_sp", "is_refused"), [(0.05, -0.13, True), (0.0, -0.02, False), (0.07, 0.7, True)])
-def test_a_speed_that_comes_before_the_lever_is_on_another_clock(t_d, t_sp, is_refused):
-    """A lever logged 0.2 s late was fitted with a delay of -78 +/- 9 ms, and trusted."""
-    theta = np.zeros(len(FREE))
-    theta[FREE.index("t_d")], theta[FREE.index("t_sp")] = t_d, t_sp
-    covariance = np.zeros((len(FREE), len(FREE)))
-    # each is open, their sum is known
-    covariance[np.ix_(*[[FREE.index("t_d"), FREE.index("t_sp")]] * 2)] = [[0.04**2, -0.00159], [-0.00159, 0.04**2]]
-    fit = SimpleNamespace(theta=theta, covariance=covariance)
-    if is_refused:
-        with pytest.raises(ServiceError, match="do not share one clock"):
-            _expect_one_clock(fit, FREE, Path("day.csv"))
-    else:
-        _expect_one_clock(fit, FREE, Path("day.csv"))

@@ -5,6 +5,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 import pytest
+from benchmarks.service_underway import ship_of, vessel_of
 from tests.tug.busy_crew import BUSY
 
 from shaftprint.errors import ServiceError
@@ -117,3 +118,15 @@ def test_what_service_underway_cannot_be_compared_with_is_refused(vessel):
     astern = vessel.model_copy(update={"working_point": load_vessel("stan-tug-1205-astern").working_point})
     with pytest.raises(ServiceError, match="found that the shaft turns astern"):
         service_model(astern)
+
+
+def test_dynamic_inflow_behind_an_open_propeller_is_no_inertia(tmp_path):
+    """The inertia behind the gauge was 21 % large at a stated 4 %, and trusted: the gauge seemed 4 std late."""
+    launch = vessel_of("pt-may-underway")
+    files, _ = sail_service(
+        launch, tmp_path / "logs", hours=0.5, seed=2, tug=ship_of(launch, 2), habits=BUSY, trouble="dynamic-inflow"
+    )
+    scan(files, launch).write(tmp_path / "segments.csv")
+    verdict = fit_service(tmp_path / "segments.csv", launch, now=NOW).fingerprint.verdict
+    assert not verdict.trustworthy
+    assert "as with dynamic inflow" in verdict.reason

@@ -17,6 +17,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, T_D, T_SP, TAU_DN
+from shaftprint.catalogue._known_propeller import OF_THE_SHIP
 from shaftprint.distributions import NORMAL_95, deviations
 from shaftprint.service._score import Score
 
@@ -26,8 +27,9 @@ _LEAST_LEFT = 0.1
 _COVERAGE, _MANY = 0.95, 1e4
 FLOOR: Mapping[str, float] = MappingProxyType({GAUGE_K_P.name: 0.003, GAUGE_K_I.name: 0.003, TAU_DN.name: 0.002})
 """Share of each number below which its standard deviation does not fall, however long the service."""
-UNDERWAY_WIDER = 1.5
-"""Deviations underway over those of the scatter: no law of hull and propeller is exact over all speeds.
+SHIP_WIDER, LINE_WIDER = 1.5, 1.2
+"""Deviations underway, of the numbers of the ship and of the others, over those of the scatter: no law of hull and
+propeller is exact over all speeds.
 
 Without it 98 % of the intervals of 20 drawn tugs with nozzles held, and 87 % of 19 launches with open propellers.
 """
@@ -71,3 +73,8 @@ def with_floor(covariance: FloatArray, theta: FloatArray, free: Sequence[str]) -
     """Return a covariance with what no length of service takes away, shape (free, free)."""
     floor = [FLOOR.get(name, 0.0) * value + FLOOR_S.get(name, 0.0) for name, value in zip(free, theta, strict=True)]
     return np.asarray(covariance + np.diag(np.square(floor)))
+
+
+def wider_underway(free: Sequence[str]) -> FloatArray:
+    """Return by how much the deviation of each number of a ship that makes way is wider, shape (free,)."""
+    return np.array([SHIP_WIDER if name in OF_THE_SHIP else LINE_WIDER for name in free])

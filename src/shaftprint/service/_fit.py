@@ -14,7 +14,7 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
 from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, GAUGE_OMEGA_N, GAUGE_ZETA, T_D, TAU_DN, TAU_UP
 from shaftprint.errors import ServiceError
-from shaftprint.service._deviations import UNDERWAY_WIDER, clustered, with_floor
+from shaftprint.service._deviations import clustered, wider_underway, with_floor
 from shaftprint.service._misfit import Misfit, misfit_of
 from shaftprint.service._model import ServiceModel
 from shaftprint.service._progress import Progress, Reached
@@ -258,7 +258,8 @@ def fit_segments(records: Sequence[Record], model: ServiceModel, *, progress: Pr
     theta, sums = course.theta, sums_of(course.each, model, course.theta)
     of_noise: FloatArray = np.linalg.inv(sums.information).astype(np.float64)
     covariance, freedom = clustered(course.each, sums.prior, of_noise)
-    covariance *= UNDERWAY_WIDER**2 if model.sails else 1.0
+    if model.sails:
+        covariance *= np.outer(wider_underway(model.free), wider_underway(model.free))
     misfit = misfit_of(course.runs, course.whitening, model, theta, sums.prior)
     return ServiceFit(
         theta=frozen_float(theta),

@@ -10,11 +10,11 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue._gauge import T_D, T_SP
 from shaftprint.errors import ServiceError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary
 from shaftprint.service._day_folder import SCORES, SCORES_AGAINST, VALUES, VALUES_AGAINST, scores_text, theta_text
+from shaftprint.service._delays import expect_one_clock, with_delays_known
 from shaftprint.service._fingerprint import Load, fingerprint_of_service
 from shaftprint.service._fit import ServiceFit, fit_segments
 from shaftprint.service._model import ServiceModel, service_model
@@ -29,9 +29,6 @@ if TYPE_CHECKING:
     from shaftprint.campaign._trial_conditions import TrialConditions
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.vessel._vessel import Vessel
-
-LATEST_T_SP_S, EARLIEST_S = 0.5, -0.02
-"""Latency of the set point, and delay of all, beyond which the lever is not on the clock of the others [s]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -135,16 +132,17 @@ def fit_service(
     kept = None if progress is None else progress_of(Path(progress), paths, model)
     fit = fit_segments(records, model, progress=kept)
     used = tuple(one for one, counts in zip(given, fit.counts, strict=True) if counts)
-    _expect_one_clock(fit, model.free, paths[0])
+    expect_one_clock(fit, model.free, paths[0])
+    told = with_delays_known(fit, model.free)
     made = fingerprint_of_service(
-        fit,
+        told,
         model,
         vessel,
         line=days[0][1],
         segments=used,
         of=sum(len(segments) for segments, *_ in days),
         load=_load_of(
-            fit,
+            told,
             model,
             [one for one, counts in zip(records, fit.counts, strict=True) if counts],
             [load for _, _, load, _ in days],
@@ -222,20 +220,3 @@ def _mean_load(loads: Sequence[tuple[float, float]]) -> tuple[float, float]:
     mean = float(weight @ values / weight.sum())
     within = 1.0 / weight.sum()
     return mean, float(np.sqrt(max(within, np.var(values, ddof=1) / values.size)))
-
-
-def _expect_one_clock(fit: ServiceFit, free: Sequence[str], path: Path) -> None:
-    """Refuse a speed that comes before the lever, or long after it.
-
-    What the delay of the loop and that of the set point have of it a log hardly tells; their sum it does. Raises
-    ServiceError if it is so.
-    """
-    delays = np.array([float(name in (T_D.name, T_SP.name)) for name in free])
-    whole, std = float(delays @ fit.theta), float(np.sqrt(delays @ fit.covariance @ delays))
-    if EARLIEST_S - 3.0 * std <= whole and fit.theta[free.index(T_SP.name)] <= LATEST_T_SP_S:
-        return
-    raise ServiceError(
-        f"{path}: expected a speed that follows the lever within {LATEST_T_SP_S:g} s, found a delay of "
-        f"{1e3 * whole:.0f} +/- {1e3 * std:.0f} ms: lever, speed and torque do not share one clock; log all three with "
-        "one logger or bring its files onto one clock (shaftprint merge)."
-    )
