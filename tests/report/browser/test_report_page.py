@@ -3,10 +3,13 @@
 import itertools
 import re
 import shutil
+import subprocess
+import zlib
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.conftest import CHROMIUM
 
 from shaftprint.report import _render as render_module
 from shaftprint.report import render_report
@@ -327,8 +330,6 @@ def test_print_has_every_chart_in_light_colours_and_no_buttons(visit, report, tm
     """Charts that were never near the screen too: all of them are drawn before the page is printed."""
     with visit(report, color_scheme=scheme) as found:
         found.wait_for("document.getElementById('plot-fit').dataset.state === 'drawn'")
-        # the data of all have come
-        found.wait_for("[...document.querySelectorAll('.plot')].every(place => place.dataset.state)")
         found.page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
         drawn = found.page.eval_on_selector_all(".plot[data-state=drawn]", "list => list.map(e => e.dataset.plot)")
         assert drawn == found.page.eval_on_selector_all(
@@ -345,6 +346,23 @@ def test_print_has_every_chart_in_light_colours_and_no_buttons(visit, report, tm
         (tmp_path / "report.pdf").write_bytes(pdf)
         assert pdf.startswith(b"%PDF")
         assert len(re.findall(rb"/Type\s*/Page\b", pdf)) >= 5
+
+
+@pytest.mark.usefixtures("browser")
+def test_a_print_without_a_reader_has_every_chart(report, tmp_path):
+    """Printed as soon as the page is loaded, it has the lines of a print before which it had seconds to rest."""
+
+    def printed(*options):
+        file = tmp_path / f"{len(options)}.pdf"
+        words = ["--headless", "--no-sandbox", "--disable-gpu", *options, f"--print-to-pdf={file}", report.as_uri()]
+        subprocess.run([CHROMIUM, *words], check=True, capture_output=True, timeout=120, cwd=tmp_path)
+        streams = re.findall(rb"FlateDecode[^>]*>>\s*stream\r?\n(.*?)endstream", file.read_bytes(), re.DOTALL)
+        pages = [zlib.decompressobj().decompress(stream) for stream in streams]
+        return sum(len(re.findall(rb"(?m)[ \n][mlc]$", page)) for page in pages)
+
+    at_once, rested = printed(), printed("--virtual-time-budget=20000")
+    assert rested > 1000
+    assert at_once == rested
 
 
 def test_the_printed_report_is_small_and_its_bars_keep_their_textures(visit, report):

@@ -356,7 +356,8 @@
     }, { rootMargin: NEAR });
     places.forEach((place) => watcher.observe(place));
     if (places.length) want(places[0]);
-    // The data of far charts come when the page is at rest, so that all can be drawn before it is printed.
+    // What is printed comes before the page counts as loaded, since some print it then; what is folded when it is at rest.
+    library.then(() => places.filter((place) => !isFolded(place)).forEach(fetchData), () => {});
     library.then(() => queue).then(() => places.forEach(fetchData), () => {});
     const resized = new ResizeObserver((entries) => {
       for (const { target } of entries) {
