@@ -1,5 +1,6 @@
 """The first pages as PDF: how many there are, and that no text of a file is taken for more than text."""
 
+import itertools
 import re
 import sys
 from dataclasses import replace
@@ -9,8 +10,10 @@ import pytest
 
 from shaftprint.errors import ReportError
 from shaftprint.report import render_pdf, render_report, save_chart
+from shaftprint.report.charts._pictures import draw
+from shaftprint.report.paper import _write_pdf
 from shaftprint.report.paper._write_pdf import write_pdf
-from shaftprint.report.sections._engineer import number_section, verdict_section
+from shaftprint.report.sections._engineer import budget_section, number_section, verdict_section
 from shaftprint.report.sections._results import stability_section
 from shaftprint.report.sections.first_page._cover_of import cover_of
 
@@ -100,3 +103,27 @@ def test_a_command_in_a_sentence_is_printed_as_words(tmp_path, fingerprint, vess
     typed = replace(fingerprint.verdict, cautions=("Read `shaftprint limits --records St1`, or --after.",))
     told = fingerprint.model_copy(update={"verdict": typed})
     assert written(tmp_path / "told.pdf", told, vessel) != written(tmp_path / "out.pdf", fingerprint, vessel)
+
+
+def test_each_name_of_a_chart_has_a_line_of_its_own(tmp_path, monkeypatch, fingerprint, vessel):
+    """Twenty-eight bars were drawn as high as a step: their names lay on one another."""
+    drawn = []
+
+    def kept(chart, **options):
+        drawn.append(draw(chart, **options))
+        return drawn[-1]
+
+    (row, *_) = [row for row in fingerprint.budget.rows if row.shares]
+    many = replace(fingerprint.budget, rows=tuple(replace(row, name=f"name {i}") for i in range(28)))
+    monkeypatch.setattr(_write_pdf, "draw", kept)
+    inputs = SimpleNamespace(fingerprint=fingerprint.model_copy(update={"budget": many}))
+    written(tmp_path / "many.pdf", fingerprint, vessel, further=budget_section(inputs))
+    (figure,) = drawn
+    figure.canvas.draw()
+    boxes = [label.get_window_extent() for label in figure.axes[0].get_yticklabels()]
+    assert len(boxes) == 28
+    edges = sorted((box.y0, box.y1) for box in boxes)
+    assert all(below[1] < above[0] for below, above in itertools.pairwise(edges))
+    # letters are as large as those of a table on paper
+    letters_pt = figure.axes[0].get_yticklabels()[0].get_fontsize() * _write_pdf.SHRUNK
+    assert letters_pt == pytest.approx(_write_pdf.CELL_PT)

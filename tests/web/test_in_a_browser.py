@@ -235,6 +235,26 @@ def file_of(page):
     return page.locator("#text").inner_text()
 
 
+def test_printed_tables_have_their_head_and_whole_dates(browser, server):
+    page = browser.new_page(viewport={"width": 688, "height": 900})
+    page.goto(f"{server.address}/")
+    page.emulate_media(media="print")
+    heads = page.locator("thead th")
+    assert "newest test" in heads.all_inner_texts()
+    assert all(box["height"] > 0.0 and box["width"] > 0.0 for box in (one.bounding_box() for one in heads.all()))
+    seen = page.eval_on_selector_all("thead th *", "all => all.map(one => getComputedStyle(one).display)")
+    assert "none" not in seen
+    style = "document.querySelector('thead').computedStyleMap().get('display').toString()"
+    assert page.evaluate(style) == "table-header-group"
+    lines = page.eval_on_selector_all(
+        "tbody time",
+        "all => all.map(one => { one.closest('td').style.maxWidth = '1px'; return one.getClientRects().length; })",
+    )
+    assert lines
+    assert set(lines) == {1}
+    page.close()
+
+
 def test_windows_moved_by_mouse_and_by_keys_give_the_same_campaign(browser, windows):
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     texts = []

@@ -12,6 +12,8 @@ _SYMBOL = re.compile(r"\b(?:(?:[A-Za-z]|tau|omega)_[A-Za-z0-9]+(?:\^\d+)?|zeta)\
 _POWER = re.compile(r"\^(\d+)")
 # what is typed: a command between backticks, or an option by itself
 _TYPED = re.compile(r"`[^`\n]+`|(?<![\w-])--[a-z][a-z-]+")
+# a date is not parted at its hyphens
+_DAY = re.compile(r"\d{4}-\d\d-\d\d")
 _LETTERS = {"tau": "τ", "omega": "ω", "zeta": "ζ", "delta": "δ", "eta": "η", "rho": "ρ"}
 
 
@@ -20,6 +22,8 @@ def cell_html(text: str, table: Table) -> Markup:
     if isinstance(text, Symbol):
         name, bracket, unit = text.partition(" [")
         return symbol_html(name) + escape(bracket + unit)
+    if _DAY.fullmatch(text):
+        return Markup("<time>{}</time>").format(text)
     return sentence_html(text) if table.symbols else escape(text)
 
 

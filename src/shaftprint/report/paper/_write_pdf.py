@@ -25,11 +25,13 @@ if TYPE_CHECKING:
     from shaftprint.report.sections._cover import Card, Cover
     from shaftprint.report.sections._sections import Picture, Section
 
-# Two of them and the budget are a sheet; a Bode diagram has rows of 40 mm at least, titles and legend beside them. All
-# are drawn larger than they are printed: letters of 6 pt.
+# Two of them are a sheet; a Bode diagram has rows of 40 mm at least, titles and legend beside them. All are drawn a
+# little larger than they are printed: their letters of 8 pt are as large as those of a table, and each name has a line.
 HIGHEST_PICTURE_MM = 60.0
 BODE_ROW_MM = 54.0
-SHRUNK = 0.75
+SHRUNK = CELL_PT / 8.0
+NAME_MM = 3.4
+BESIDE_NAMES_MM = 32.0
 MM_A_PX = 0.19
 # What ReportLab leaves free within the margins, above and below.
 FRAME_PT = 14.0
@@ -117,18 +119,13 @@ def _cards(cards: "Sequence[Card]", looks: Looks) -> Any:
     cells += [[] for _ in range(-len(cells) % CARDS_A_ROW)]
     rows = [cells[start : start + CARDS_A_ROW] for start in range(0, len(cells), CARDS_A_ROW)]
     grid = Grid(rows, colWidths=[WIDTH_MM / CARDS_A_ROW * mm] * CARDS_A_ROW)
-    lines = [
-        (
-            "LINEABOVE",
-            (place % CARDS_A_ROW, place // CARDS_A_ROW),
-            (place % CARDS_A_ROW, place // CARDS_A_ROW),
-            3,
-            colour,
-        )
-        for place, colour in enumerate(PAPER_COLOURS[card.state] for card in cards)
-    ]
+    lines: list[tuple[Any, ...]] = []
     # the last card has what is left of its row
-    last = ((len(cards) - 1) % CARDS_A_ROW, -1)
+    last = ((len(cards) - 1) % CARDS_A_ROW, len(rows) - 1)
+    for number, card in enumerate(cards):
+        place = (number % CARDS_A_ROW, number // CARDS_A_ROW)
+        lines.append(("BOX", place, (-1, -1) if place == last else place, 0.5, PAPER_COLOURS["line"]))
+        lines.append(("LINEABOVE", place, (-1, -1) if place == last else place, 3, PAPER_COLOURS[card.state]))
     grid.setStyle([("VALIGN", (0, 0), (-1, -1), "TOP"), ("SPAN", last, (-1, -1)), *lines])
     return grid
 
@@ -199,6 +196,8 @@ def _picture(picture: "Picture", looks: Looks) -> list[Any]:
     chart = picture.chart()
     is_bode = chart.panels[0].x.log
     height_mm = BODE_ROW_MM * chart.rows if is_bode else min(HIGHEST_PICTURE_MM, MM_A_PX * chart.height_px)
+    if names := chart.panels[0].y.names:
+        height_mm = NAME_MM * len(names) + BESIDE_NAMES_MM
     # ten millimetres are a centimetre
     figure = draw(chart, size_cm=(WIDTH_MM / SHRUNK / 10.0, height_mm / SHRUNK / 10.0))
     figure.savefig(content, format="png", dpi=200)
