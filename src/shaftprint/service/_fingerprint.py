@@ -61,6 +61,7 @@ _STRANGE = 2.5
 _ASSUMED = (
     "Nobody trims the lever against the load at the moments at which he moves it anyway: no log shows that.",
     "The set point that was logged is what the control unit follows, with no rate limit of its own.",
+    "The delay of the governor is one at all speeds: few hours hardly show one that counts in turns of the engine.",
 )
 _AT_THE_QUAY = "The ship lies at the quay or makes little way, and its propeller takes the square of the speed."
 _UNDERWAY = (
