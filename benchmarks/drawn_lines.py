@@ -54,13 +54,13 @@ def seen_by_gauge(
     known
         Parameters that are known otherwise.
     """
-    seen = {p.name: named[p.name] for p in model.parameters}
+    known = {"t_gauge": of.late_s, **known}
+    seen = {p.name: known[p.name] if p.name in known else named[p.name] for p in model.parameters}
     for parameter in model.parameters:
         if parameter.role is not None and parameter.role.over_torque:
             seen[parameter.name] *= of.scale
     for slope in slopes:
         seen[slope] *= 1.0 - of.scale * of.zero_nm / shown_nm
-    seen |= {"t_gauge": of.late_s, **known}
     seen |= {one.name: float(one.of(seen)) for one in model.combinations}  # type: ignore[arg-type]
     return seen | {name: named[name] for name in ("I_dn", "I_up")}
 

@@ -25,6 +25,9 @@ def test_engine_and_machine_are_identified_with_the_truth_in_their_intervals(sai
     truth = json.loads((sailed / "test.truth.json").read_text(encoding="utf-8"))["normalised"]
     assert fingerprint["structure"] == "GAUGE-HYBRID"
     assert fingerprint["verdict"]["trustworthy"]
+    # the converter follows fast sines less, which is no filter of its channel
+    assert fingerprint["verdict"]["reasons"] == []
+    assert {"K_p of the shaft", "t_d + t_sp", "K_p / K_i"} <= set(fingerprint["verdict"]["trusted"])
     numbers = {one["name"]: one for one in fingerprint["parameters"]}
     for name in ("K_p", "K_i", "c_m", "s_m", "t_d", "t_sp", "tau_up", "g"):
         low, high = numbers[name]["interval_95"]

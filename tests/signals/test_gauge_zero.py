@@ -51,5 +51,11 @@ def test_a_zero_that_the_vessel_file_or_dry_friction_allows_is_no_reason():
     assert zero_reason(-1.01 * allowed, 0.0, 1700.0, TUG) is not None
 
 
+def test_at_one_speed_where_a_gauge_that_bends_looks_alike_two_deviations_speak_against_it():
+    allowed = 2.0 * (TUG.sensors.shaft_torque.zero_std**2 + 17.0**2) ** 0.5
+    assert zero_reason(0.99 * allowed, 0.0, 1700.0, TUG, by_slope=True) is None
+    assert zero_reason(1.01 * allowed, 0.0, 1700.0, TUG, by_slope=True).kind == "gauge line"
+
+
 def test_underway_nothing_tells_it_from_the_way_of_the_ship():
     assert zero_reason(1000.0, 12.0, 1700.0, load_vessel("stan-tug-1205-underway")) is None

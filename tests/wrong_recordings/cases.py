@@ -7,6 +7,7 @@ from tests.wrong_recordings.trial import PICK_UPS as ENGINE_AND_PROPELLER
 from tests.wrong_recordings.trial import SET_POINT, SPEED, TORQUE
 
 from shaftprint.tug import Coupling
+from shaftprint.units import PERCENT
 
 
 def _step(size: float, at_s: float = 540.0):  # type: ignore[no-untyped-def]
@@ -68,6 +69,8 @@ GAUGE = (
     Case(name="vessel file: gauge zero 100 N m", cause="zero", change=m.sensor("shaft_torque", zero_nm=100.0)),
     Case(name="gauge follows a power law of 0.94", cause="zero|scale|linear|legs",
          change=m.changed(TORQUE, lambda time, v: v.mean() * np.sign(v) * np.abs(v / v.mean()) ** 0.94)),
+    *(Case(name=f"gauge bends: changes {PERCENT * abs(size):.0f} % too {'large' if size > 0.0 else 'small'}",
+           cause="zero|scale|linear", change=m.bent(TORQUE, size)) for size in (-0.1, -0.05, 0.05, 0.1)),
     Case(name="gauge follows a power law of 0.9", both=True, cause="scale|linear",
          change=m.changed(TORQUE, lambda time, v: v.mean() * np.sign(v) * np.abs(v / v.mean()) ** 0.9)),
     Case(name="torque clipped at +12 % of its mean", both=True, cause=CLIPPED, fast=True,

@@ -91,6 +91,16 @@ def gain(channel: str, of: Callable[[Values], Values]) -> Change:
     return changed(channel, lambda time, values: values * of(time))
 
 
+def bent(channel: str, share: float) -> Change:
+    """Let a channel bend: its mean is shown as it is, a change about it larger by a share."""
+
+    def applied(time: Values, values: Values) -> Values:
+        over = values / values.mean()
+        return values * (1.0 + share * (over - 1.0))
+
+    return changed(channel, applied)
+
+
 def late(seconds: float, *channels: str) -> Change:
     """Let channels come late; before the begin they keep their first value."""
 

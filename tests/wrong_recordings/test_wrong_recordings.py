@@ -61,6 +61,18 @@ def test_a_set_point_that_is_logged_late_costs_what_rests_on_its_clock_alone(lat
     assert "t_sp" not in late.verdict.trusted
 
 
+@pytest.mark.parametrize("late_s", [0.06, 0.08])
+def test_a_set_point_that_is_late_within_chance_leaves_the_truth_in_the_intervals(late_s):
+    """The latency stands at nothing, or near it, and what rests on it reaches to where one below nothing had it."""
+    late = fingerprint_of(mutations.late(late_s, SET_POINT)(clean(ONE_SPEED)[0]))
+    truth = true_values(ONE_SPEED)
+    assert late.quantity("t_sp").value >= 0.0
+    moved = {"t_sp", "t_d + t_sp"}
+    assert [one for one in late.verdict.trusted if one in truth.keys() - moved] != []
+    for name in ("t_d", "omega_n", "zeta", "K_p / K_i", "gain margin", "phase margin", "delay margin"):
+        assert is_right(late.quantity(name), truth[name]), name
+
+
 @pytest.mark.wrong_recordings
 def test_the_two_speeds_that_were_not_spoilt_are_trusted_and_right():
     expect_trusted_and_right(TWO_SPEEDS)

@@ -64,9 +64,9 @@ def _assumptions(
         yield from _of_engine_side(identification, vessel, margins, intervals)
     scale = sensors.shaft_torque.scale_std
     yield (
-        f"What is in N m or kg m2 rests on the scale of the torque gauge, known to {PERCENT * scale:.2g} %; K_Q "
-        f"besides on the diameter of the propeller, {propeller.diameter_m:g} m, and a density of "
-        f"{vessel.water_density_kg_m3:g} kg/m3."
+        f"What is in N m or kg m2 rests on the scale of the torque gauge, known to {PERCENT * scale:.2g} %, and on a "
+        f"line of it that does not bend; K_Q besides on the diameter of the propeller, {propeller.diameter_m:g} m, "
+        f"and a density of {vessel.water_density_kg_m3:g} kg/m3."
     )
     if vessel.taken_as_usual:
         yield (

@@ -36,6 +36,7 @@ from shaftprint.fingerprint._working_point_share import (
 )
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._late_set_point import let_go
 from shaftprint.identify.judgement._verdict import assess
 from shaftprint.identify.uncertainty._budget import Budget, budget
 from shaftprint.identify.uncertainty._profile import Interval, profile
@@ -119,7 +120,7 @@ def take_fingerprint(
     shifts = shifts_of_working_point(identification, main, rack_share, of_legs if main in of_legs else ())
     shifts |= shifts_of_speed_age(identification)
     stated = _budget(identification, signals.working_point, vessel, margins, shifts)
-    profiled = profile(identification, margins) if identification.is_likelihood else None
+    profiled = profile(let_go(identification), margins) if identification.is_likelihood else None
     intervals = {} if profiled is None else profiled.intervals
     physical = (*physical_quantities(identification, signals.working_point, vessel, stated, intervals), *ship)
     left_out = _left_out(identification)

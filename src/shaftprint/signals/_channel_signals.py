@@ -141,6 +141,11 @@ class ExcitationSignal(ChannelSignal):
         return complex(self._splined(frequency_hz) / (np.sinc(held) * np.exp(-1j * np.pi * held)))
 
     @property
+    def is_reached(self) -> bool:
+        """Whether it shows what was reached and not what was asked for, as a converter does that follows with a lag."""
+        return self.share is not None
+
+    @property
     def words(self) -> str:
         """What it is, in words."""
         return self.input.replace("_", " ")

@@ -156,13 +156,15 @@ def estimate_spectra(
     expected = np.array([_expected_amplitude(moved, campaign, line) for line in measurements])
     band = None if thesis else band_of_lines(measurements, expected, moved)
     of_band = band_reasons(band, channel=moved.channel, symbol=moved.name)
+    # what lags behind the campaign file by itself is on no clock of its own
+    is_timed = not (thesis or moved.is_reached)
     return Spectra(
         response=replace(
             response,
             reasons=(*signals.reasons, *against, *of_band),
             input_late_s=None if band is None or band.late_s else band.widest_s,
-            input_drift=None if thesis else drift_of_input(measurements, campaign.sines, moved),
-            input_jump_s=np.empty(0) if thesis else jump_of_input(measurements, campaign.sines, moved),
+            input_drift=drift_of_input(measurements, campaign.sines, moved) if is_timed else None,
+            input_jump_s=jump_of_input(measurements, campaign.sines, moved) if is_timed else np.empty(0),
         ),
         windows=tuple(line.window for line in measurements),
         signal_to_noise=ratios,

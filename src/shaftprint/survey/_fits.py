@@ -15,6 +15,7 @@ from shaftprint.identify.comparison._compare import compare_fits
 from shaftprint.identify.comparison._comparison import StructureComparison
 from shaftprint.identify.fit._fit_of import fit_of
 from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._late_set_point import bounds_of_late
 from shaftprint.identify.judgement._affected_numbers import by_weight
 from shaftprint.identify.judgement._misfit import explained
 from shaftprint.identify.judgement._prior_contradictions import NOMINAL
@@ -29,8 +30,8 @@ from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel._vessel import Vessel
 
-# Deviance by which a latency below nothing is no chance: two standard deviations.
-_CLEARLY = 4.0
+# Deviance by which a latency below nothing is no chance: three standard deviations.
+_CLEARLY = 9.0
 
 
 def priors_of(
@@ -177,13 +178,9 @@ def _fitted(
 
     A latency that stops at nothing pulls the delay of the loop, and the margins with it, to where the sum of both is
     right; a set point that is late by more leaves no stable loop. A misfit of another cause is left as it is, and so is
-    what chance does: that a latency is not below nothing tells much of delay and gains.
+    what chance does: values are of a line as it is built, and intervals reach below nothing all the same.
     """
-    late = {
-        one.name: (-one.upper, one.upper)
-        for one in structure.free
-        if one.role == ShipRole.SET_POINT_LATENCY and one.lower == 0.0
-    }
+    late = bounds_of_late(structure.free)
     if not late:
         return fit_of(pairs_of(structure, measurement), rng=copy.deepcopy(rng), settings=settings)
     found: Identification | IdentificationError

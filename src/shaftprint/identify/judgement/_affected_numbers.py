@@ -44,7 +44,7 @@ AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
     "prior": (ALL - {"speed", "set point"}, "it depends on a prior that the data contradict"),
     "record": (ALL, "it depends on how its records were taken"),
     "gauge line": (
-        frozenset(("torque", "level", "load")),
+        frozenset(("torque", "level", "load", "governor", "delay")),
         "it depends on the zero of the torque gauge, or on its line",
     ),
     "gauge zero": (frozenset(("level",)), "it depends on the zero of the torque gauge"),

@@ -20,7 +20,7 @@ def jump_reasons(identification: Identification) -> tuple[Reason, ...]:
     effect = _effect(identification)
     if effect is None or not _fall(identification, effect) > LIKELY:
         return ()
-    response = identification.response
+    response = next(part.response for part in identification.experiments if np.any(part.response.input_jump_s))
     jump_s, late = response.input_jump_s, np.flatnonzero(response.input_jump_s)
     first, last_s = (
         response.lines[late[np.argmin(response.middle_s[late])]],

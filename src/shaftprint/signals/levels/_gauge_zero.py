@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
 # Standard deviation of what a constant friction may be, over the torque.
 _FRICTION = 0.01
-# So many standard deviations of all that a zero may be by chance speak against it.
-_FAR = 3.0
+# So many standard deviations of all that a zero may be by chance speak against it; fewer where a gauge that bends looks
+# alike, which makes inertia and torque coefficient wrong by as much.
+_FAR, _FAR_BY_SLOPE = 3.0, 2.0
 # The squares of two speeds that tell a zero are this much apart.
 _APART = 0.8
 
@@ -52,7 +53,7 @@ def zero_reason(
     """
     sensor = vessel.sensors.shaft_torque
     usual = math.hypot(std_nm, sensor.zero_std, _FRICTION * torque_nm)
-    if vessel.is_underway or not abs(zero_nm) > _FAR * usual:
+    if vessel.is_underway or not abs(zero_nm) > (_FAR_BY_SLOPE if by_slope else _FAR) * usual:
         return None
     # the torque of a shaft that turns astern is counted the other way round
     right = sensor.zero_nm + (-zero_nm if vessel.working_point.is_astern else zero_nm)

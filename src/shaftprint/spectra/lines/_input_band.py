@@ -57,12 +57,14 @@ class InputBand:
 def band_of_lines(
     lines: "Sequence[LineMeasurement]", expected: FloatArray, moved: "ExcitationSignal"
 ) -> InputBand | None:
-    """Return what the sizes of the lines of what was moved say; None of messages that the governor obeys.
+    """Return what the sizes of the lines of what was moved say; None of what the campaign does not tell the sizes of.
+
+    The governor obeys messages as they came, and a machine reaches fast sines less.
 
     ``lines``: one entry a line. ``expected``: amplitude that the campaign asks for at each line, over the working
     point, shape (lines,). ``moved``: the signal that was moved.
     """
-    if moved.is_obeyed:
+    if moved.is_obeyed or moved.is_reached:
         return None
     hertz = np.array([line.window.frequency_hz for line in lines])
     amplitude = np.array([line.excited for line in lines])
