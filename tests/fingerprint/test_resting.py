@@ -1,6 +1,7 @@
 """Which numbers rest on what was taken as known."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 from tests.known_fits import TRUTH, noisy_response
@@ -39,17 +40,18 @@ def test_gains_rest_on_the_inertia_upstream_and_ratios_of_one_recording_do_not()
 
 
 def said_of(vessel, *, tau_up_std, share):
-    """Return what is said to rest on inertia and slope of a fit, its intervals, and a way to fit it with one held."""
+    """Return what is said to rest on gauge, inertia and slope of a fit, and ways to fit it with one held or bent."""
     settings = Settings(starts=12, priors={"tau_up": Prior(1.016, tau_up_std), "g": Prior(0.0, 0.1)})
     measured = noisy_response(GAUGE, TRUTH, share=share, seed=3)
     fit = identify(GAUGE, measured, rng=np.random.default_rng(1), settings=settings)
     intervals = profile_intervals(fit)
 
-    def again(name, value):
+    def again(name="", value=0.0, *, bent=0.0):
         priors = {other: prior for other, prior in settings.priors.items() if other != name}
+        of_output = np.array([1.0 + bent * (output == "M_s") for output in measured.outputs])
         held = identify(
-            GAUGE.held_at(**{name: value}),
-            measured,
+            GAUGE.held_at(**{name: value}) if name else GAUGE,
+            replace(measured, response=measured.response * of_output[:, None, None]),
             rng=np.random.default_rng(1),
             settings=Settings(starts=12, priors=priors),
         )
@@ -63,9 +65,26 @@ def said_of(vessel, *, tau_up_std, share):
     return [text for text in assumptions_of(fit, vessel, (), intervals) if "leave" in text], again
 
 
+def test_what_is_said_to_rest_on_a_gauge_that_does_not_bend_leaves_its_interval_with_one_that_does(vessel):
+    (of_gauge, *_), again = said_of(vessel, tau_up_std=0.03, share=0.003)
+    told, _, ground = of_gauge.partition(" rest on a torque gauge whose line does not bend: ")
+    assert ground == "with one that shows changes 3 % larger or smaller they would leave their intervals."
+    assert {"tau_dn", "k_q"} <= set(re.split(", | and ", told)) == again(bent=0.03) | again(bent=-0.03)
+
+
+def test_a_gear_ratio_is_named_where_no_pick_up_shows_the_speed_of_the_propeller(vessel):
+    fit = identify(GAUGE, noisy_response(GAUGE, TRUTH, share=0.01, seed=3), rng=np.random.default_rng(1))
+    engine = tuple(one for one in vessel.sensors.speed if one.shaft == "engine")
+    geared = vessel.model_copy(update={"sensors": vessel.sensors.model_copy(update={"speed": engine})})
+    named = [
+        f"gear ratio of {vessel.gearbox.ratio:g}" in " ".join(assumptions_of(fit, one)) for one in (vessel, geared)
+    ]
+    assert named == [False, True]
+
+
 def test_what_is_said_to_leave_its_interval_leaves_it_when_it_is_fitted_again(vessel):
     """The drawing knows the inertia better than the test: gains follow it."""
-    (of_inertia, of_slope), again = said_of(vessel, tau_up_std=0.03, share=0.001)
+    (_, of_inertia, of_slope), again = said_of(vessel, tau_up_std=0.03, share=0.001)
     left = again("tau_up", 0.8 * 1.016) | again("tau_up", 1.2 * 1.016)
     assert {"K_p", "K_i"} <= left
     told, _, ground = of_inertia.partition(" rest on the inertia upstream of the gauge, 54")
@@ -76,7 +95,7 @@ def test_what_is_said_to_leave_its_interval_leaves_it_when_it_is_fitted_again(ve
 
 def test_an_inertia_that_moves_nothing_is_not_said_to_move_anything(vessel):
     """The test knows the inertia as well as the drawing: with another one the gains stay in their intervals."""
-    (of_slope,), again = said_of(vessel, tau_up_std=0.5, share=0.01)
+    (_, of_slope), again = said_of(vessel, tau_up_std=0.5, share=0.01)
     assert not {"K_p", "K_i"} & (again("tau_up", 0.8 * 1.016) | again("tau_up", 1.2 * 1.016))
     assert "inertia" not in of_slope
     assert "K_p" in again("g", -0.5)

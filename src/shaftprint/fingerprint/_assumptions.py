@@ -5,14 +5,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import stated
 from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.judgement._causes import WRONG_SCALE
 from shaftprint.identify.judgement._clock_drift import unseen_drift
+from shaftprint.identify.judgement._suspects import moved_by
 from shaftprint.identify.search._conditional_minimum import Conditional
 from shaftprint.identify.uncertainty._profile import Interval
 from shaftprint.models._combination import Combination
 from shaftprint.models._role import Role
+from shaftprint.signals._load_reasons import rests_on_ratio
 from shaftprint.spelling import listed
 from shaftprint.units import MILLI, PERCENT
 
@@ -22,6 +26,8 @@ if TYPE_CHECKING:
 # How far what the vessel file states may be off beside its deviation: rows that were forgotten, a torque that falls
 # with the speed as in the maps of some engines.
 OTHER_INERTIAS, STEEPEST_ENGINE = (0.8, 1.2), -0.5
+# Share by which a gauge whose line bends shows a change of the torque too large, as none is that the zero passes for.
+BENT = 0.03
 # So much is in the intervals already, as the resolution of a delay.
 LEAST_S = 0.0005
 
@@ -60,13 +66,17 @@ def _assumptions(
         )
     if ShipRole.PITCH_DELAY in by_role and sensors.pitch is not None:
         yield from _of_pitch(identification, by_role, vessel)
+    if bent := _resting_on_line(identification, margins, intervals):
+        other = f"one that shows changes {PERCENT * BENT:.0f} % larger or smaller"
+        yield _resting(bent, "a torque gauge whose line does not bend", other)
     if by_role.get(ShipRole.INERTIA_UPSTREAM) in identification.settings.priors:
         yield from _of_engine_side(identification, vessel, margins, intervals)
     scale = sensors.shaft_torque.scale_std
+    geared = f", and on a gear ratio of {vessel.gearbox.ratio:g}" if rests_on_ratio(vessel) else ""
     yield (
-        f"What is in N m or kg m2 rests on the scale of the torque gauge, known to {PERCENT * scale:.2g} %, and on a "
-        f"line of it that does not bend; K_Q besides on the diameter of the propeller, {propeller.diameter_m:g} m, "
-        f"and a density of {vessel.water_density_kg_m3:g} kg/m3."
+        f"What is in N m or kg m2 rests on the scale of the torque gauge, known to {PERCENT * scale:.2g} %, on a "
+        f"line of it that does not bend{geared}; K_Q besides on the diameter of the propeller, "
+        f"{propeller.diameter_m:g} m, and a density of {vessel.water_density_kg_m3:g} kg/m3."
     )
     if vessel.taken_as_usual:
         yield (
@@ -124,6 +134,19 @@ def _of_engine_side(
         yield _resting(rest, f"an engine torque that hardly changes with speed ({slope})", other)
 
 
+def _resting_on_line(
+    identification: Identification, margins: Sequence[Combination], intervals: Mapping[str, Interval]
+) -> tuple[str, ...]:
+    """Return the numbers that leave their intervals where the gauge bends; none at two speeds, which show that."""
+    at_one_speed = len({part.structure.channels for part in identification.parts}) == len(identification.parts)
+    is_of_lines = identification.is_likelihood and not identification.objective.others
+    moved = moved_by(identification, WRONG_SCALE["M_s"]) if at_one_speed and is_of_lines else None
+    if moved is None:
+        return ()
+    bent = identification.values[list(identification.objective.free)] + BENT * np.outer((-1.0, 1.0), moved)
+    return _outside(identification, margins, intervals, bent)
+
+
 def _resting(numbers: Sequence[str], ground: str, other: str) -> str:
     """Return that numbers rest on what is taken as known, and what would move them out of their intervals."""
     alone = len(numbers) == 1
@@ -168,9 +191,20 @@ def resting_on(
     held = np.clip(np.array(at), objective.lower[place], objective.upper[place])
     optimum = identification.values[list(objective.free)]
     moved, _ = Conditional.of(objective, place).lowest(held, optimum[np.newaxis], starts=_STARTS)
-    named = objective.named(objective.complete(moved))
+    return tuple(one for one in _outside(identification, margins, intervals, moved) if one != name)
+
+
+def _outside(
+    identification: Identification,
+    margins: Sequence[Combination],
+    intervals: Mapping[str, Interval],
+    theta: FloatArray,
+) -> tuple[str, ...]:
+    """Return the names of the numbers that leave their intervals at one of the free parameters, shape (rows, free)."""
+    objective = identification.objective
+    named = objective.named(objective.complete(theta))
     with np.errstate(all="ignore"):
-        values = {p.name: named[p.name] for p in objective.free_parameters if p.name != name}
+        values = {p.name: named[p.name] for p in objective.free_parameters}
         values |= {one.name: np.asarray(one.of(named)) for one in (*objective.combinations, *margins)}
     return tuple(
         number

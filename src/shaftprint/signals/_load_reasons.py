@@ -98,10 +98,15 @@ def ratio_that_fits(factor: float, vessel: "Vessel") -> str:
 
     Empty where a pick-up on the propeller's shaft shows its speed, ratio or not. ``factor``: found over expected.
     """
-    ratio = vessel.gearbox.ratio
-    if ratio == 1.0 or any(one.shaft != "engine" for one in vessel.sensors.speed):
+    if not rests_on_ratio(vessel):
         return ""
+    ratio = vessel.gearbox.ratio
     return f"gearbox.ratio ({ratio:g} is stated, {ratio / factor**0.5:.3g} would fit)"
+
+
+def rests_on_ratio(vessel: "Vessel") -> bool:
+    """Return whether the speed of the propeller is that of the engine over the gear ratio: no pick-up shows it."""
+    return vessel.gearbox.ratio != 1.0 and all(one.shaft == "engine" for one in vessel.sensors.speed)
 
 
 def propeller_reason(

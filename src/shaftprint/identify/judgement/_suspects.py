@@ -114,6 +114,26 @@ def is_gross(identification: Identification) -> bool:
 
 def misfit_of(identification: Identification) -> tuple[FloatArray, FloatArray]:
     """Return what is left of the residuals beside the free parameters, and an orthonormal basis of theirs."""
+    residuals, table = _linear(identification)
+    scale = np.linalg.norm(table, axis=0)
+    vectors, sizes, _ = np.linalg.svd(table / np.where(scale > 0.0, scale, 1.0), full_matrices=False)
+    basis = vectors[:, sizes > OWN * sizes[0]]
+    return residuals - basis @ (basis.T @ residuals), basis
+
+
+def moved_by(identification: Identification, words: str) -> FloatArray | None:
+    """Return what a cause of size 1 adds to the free parameters, to first order, shape (free,); None where none is.
+
+    ``words``: what may be wrong, as the cause has it.
+    """
+    _, table = _linear(identification)
+    directions = (direction for cause, direction in gathered_causes(identification) if cause.words == words)
+    direction = next(directions, None)
+    return None if direction is None else np.asarray(np.linalg.lstsq(table, direction)[0], dtype=np.float64)
+
+
+def _linear(identification: Identification) -> tuple[FloatArray, FloatArray]:
+    """Return residuals of data and priors, and what each free parameter adds to what was fitted to them."""
     objective = identification.objective
     parts, slopes = [], []
     for experiment, part in zip(objective.experiments, identification.experiments, strict=True):
@@ -128,11 +148,7 @@ def misfit_of(identification: Identification) -> tuple[FloatArray, FloatArray]:
     for column, mean, weight in objective.prior_rows:
         parts.append(np.array([(mean - theta[int(column)]) * weight]))
         slopes.append(weight * np.eye(theta.size)[[int(column)]])
-    residuals, table = np.concatenate(parts), np.concatenate(slopes)
-    scale = np.linalg.norm(table, axis=0)
-    vectors, sizes, _ = np.linalg.svd(table / np.where(scale > 0.0, scale, 1.0), full_matrices=False)
-    basis = vectors[:, sizes > OWN * sizes[0]]
-    return residuals - basis @ (basis.T @ residuals), basis
+    return np.concatenate(parts), np.concatenate(slopes)
 
 
 def gathered_causes(identification: Identification) -> list[tuple[Cause, FloatArray]]:
