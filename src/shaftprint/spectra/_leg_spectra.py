@@ -15,6 +15,7 @@ from shaftprint.spectra._speed_ratios import speed_ratios
 from shaftprint.spectra.legs._leg_check import check_leg, leg_clock_reasons, leg_shape_reasons
 from shaftprint.spectra.legs._leg_lines import measure_leg
 from shaftprint.spectra.legs._leg_window import cut_leg
+from shaftprint.spectra.legs._pitch_shifts import pitch_shift_reasons
 from shaftprint.spectra.lines._clock_check import channel_clock_reasons, offsets_of_lines
 from shaftprint.spectra.lines._harmonics import collect_harmonics
 from shaftprint.spectra.lines._input_band import band_of_lines, band_reasons
@@ -128,7 +129,9 @@ def _leg(signals: "Signals", leg: "Leg", measured: "LegLines", moved: "Excitatio
     )
     of_response = shift_reasons(response) if moved.from_engine else ()
     of_band = band_reasons(band, channel=moved.channel, symbol=moved.name)
-    against = (*leg_clock_reasons(measured), *leg_shape_reasons(measured), *of_response, *of_band)
+    pitch = signals.channels.get("theta")
+    of_pitch = () if pitch is None else pitch_shift_reasons(measured, moved=moved.channel, shown=pitch.channel)
+    against = (*leg_clock_reasons(measured), *leg_shape_reasons(measured), *of_response, *of_band, *of_pitch)
     return Spectra(
         response=replace(
             response,
