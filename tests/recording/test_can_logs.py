@@ -124,6 +124,16 @@ def test_names_of_buses_are_those_of_the_log(tmp_path, dbc):
         assert recording.left_out["rows at the cut end of the file"] == "1, which hold no values."
 
 
+@pytest.mark.parametrize("flags", ["1", "9", "A", "f"])
+def test_flags_of_can_fd_are_digits_of_base_16(tmp_path, dbc, flags):
+    rows = (
+        f"({BEGAN_S + t:.6f}) can0 0CF00400##{flags}{c.tobytes().hex()}" for t, c in zip(TIMES, CONTENT, strict=True)
+    )
+    (tmp_path / "log.log").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    with read_recording(tmp_path / "log.log", dbc=dbc) as recording:
+        assert values(recording, "ActualEnginePercentTorque") == pytest.approx(TORQUE)
+
+
 @pytest.mark.parametrize(
     "row", ["({t:.6f})  can0  0CF00400   [8]  {spaced}", "({t:.6f}) can0  RX - -  0CF00400   [8]  {spaced}"]
 )

@@ -204,6 +204,15 @@ def test_a_log_of_racelogic_is_read(tmp_path):
         assert recording.channels["velocity"].rate_hz == 10.0
 
 
+def test_names_with_blanks_in_a_log_of_racelogic_are_those_of_its_list(tmp_path):
+    rows = "".join(f"012 {t} {k:+.3f} {k % 9}.5\n" for k, t in enumerate(_of_day(50_000.0, 1000, 0.1)))
+    head = "[header]\nsatellites\ntime\nvelocity kmh\nbattery volt\n\n"
+    head += "[column names]\nsats time velocity battery vo\n[data]\n"
+    with _read(tmp_path, head + rows) as recording:
+        assert list(recording.channels) == ["satellites", "velocity kmh", "battery volt"]
+        assert recording.channels["battery volt"].values(0, 2).tolist() == [0.5, 1.5]
+
+
 def test_a_counter_that_begins_later_moves_the_start(tmp_path):
     rows = "".join(f"{k},{k % 7}.5,\n" for k in range(22, 122))
     with _read(tmp_path, f"X,CH1,Start,Increment,\nSequence,Volt,-1.0,1.0e-02\n{rows}") as recording:

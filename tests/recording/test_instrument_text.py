@@ -448,3 +448,48 @@ def test_titles_over_three_rows_say_place_quantity_and_unit(tmp_path):
     expected = ["Loc. IDE00001 Quantity 1: value", *(f"Loc. IDE{k + 2:05} engine speed {k}" for k in range(9))]
     assert list(recording.channels) == expected
     assert {one.unit for one in recording.channels.values()} == {"/min"}
+
+
+def _beside(head, rows):
+    return [f"{head[k] if k < len(head) else ',,'},{row}" for k, row in enumerate(rows)]
+
+
+def test_a_row_of_letters_above_a_head_beside_the_rows_is_passed_over(tmp_path):
+    """As a spreadsheet saves it again: so far two rows of values became the titles, and the times a channel."""
+    rows = [f"{t - 0.6:.4f},{y}," for t, y in zip(TIME, Y, strict=True)]
+    head = [
+        f"Record Length,{COUNT},",
+        "Sample Interval,0.01,",
+        "Trigger Point,60,",
+        ",,",
+        "Source,CH2,",
+        "Vertical Units,V,",
+    ]
+    recording, values = _read(tmp_path, "a,b,c,x,y,d\n" + "\n".join(_beside(head, rows)) + "\n")
+    assert np.array_equal(values["CH2"], Y)
+    channel = recording.channel("CH2")
+    assert (list(recording.channels), channel.unit, channel.rate_hz, channel.start_s) == (["CH2"], "V", 100.0, -0.6)
+
+
+def test_each_channel_may_have_its_head_beside_it(tmp_path):
+    head = [[f"Record Length,{COUNT},Points", "Sample Interval,0.01,s", f"Source,{name},", f"Vertical Units,{unit},"]
+            for name, unit in (("CH1", "Volts"), ("CH3", "A"))]  # fmt: skip
+    rows = [[f"{t - 0.6:.4f},{y},,"[:-1] for t, y in zip(TIME, values, strict=True)] for values in (U, Y)]
+    both = [first + second for first, second in zip(*map(_beside, head, rows), strict=True)]
+    recording, values = _read(tmp_path, "\n".join(both) + "\n")
+    assert [(name, one.unit, one.rate_hz) for name, one in recording.channels.items()] == [
+        ("CH1", "V", 100.0),
+        ("CH3", "A", 100.0),
+    ]
+    assert np.array_equal(values["CH1"], U)
+    assert np.array_equal(values["CH3"], Y)
+
+
+def test_times_of_few_digits_below_an_empty_title_are_known_by_their_unit(tmp_path):
+    """As Rigol writes them: 600 rows, 40 us apart, printed with three figures, so that some are equal."""
+    rows = "".join(f"{0.0562 + 4e-5 * k:.2E},{k % 7}.5,{k % 5}.25, \n" for k in range(600))
+    recording, _ = _read(tmp_path, ",CH1,CH2,\nSecond,Volt,Volt,\n" + rows)
+    assert [(name, one.unit, one.rate_hz) for name, one in recording.channels.items()] == [
+        ("CH1", "V", 25_000.0),
+        ("CH2", "V", 25_000.0),
+    ]

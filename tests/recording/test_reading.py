@@ -129,6 +129,11 @@ def test_a_format_that_is_not_read_says_which_export_is(tmp_path, name, content,
             "# sample\n<0x316> [8] 05 21 68 09 21 21 00 6f\n<0x18f> [2] fe 5b\n",
             "frames of a CAN bus without times: log it with candump -l",
         ),
+        ("309#40\n025#00\n309#40\n", "frames of a CAN bus without times: log it with candump -l"),
+        (
+            "22:20:14:992 Rx 0 0000021A s 2 FE 36\n22:20:14:992 Rx 0 0000023A s 2 00 37\n",
+            "a log of BUSMASTER.*ASC",
+        ),
         (
             "# sample\n  can0  09F8027F   [8]  00 FC FF FF 00 00 FF FF\n  can0  09F8017F   [2]  E8 AC\n",
             "expected times in front of the frames, found none; log with candump -L",

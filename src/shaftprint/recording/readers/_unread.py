@@ -12,11 +12,11 @@ _ARCHIVE = "it is an archive: unpack it"
 _OCTAVE = "in Octave save -v7 FILE.mat"
 _NMEA_0183 = rb"[^\r\n$!]{0,80}[$!][A-Z]{4,5},[^\r\n]*\*[0-9A-F]{2}"
 _IKONVERT = rb"!PDGY,\d+,\d,\d+,\d+,[\d.]+,"
-_BUSMASTER = rb"\*{3}(?:BUSMASTER|PROTOCOL) "
+_BUSMASTER = rb"(?:\*{3}(?:BUSMASTER|PROTOCOL) |\d\d?:\d\d:\d\d:\d{3,4} +[TR]x +\d+ +(?:0x)?[0-9A-Fa-f]+ +[sxr]+ +\d+ )"
 _VCD = rb"\$(?:date|version|timescale|scope|var|comment|enddefinitions)\b"
 _FRAMES_WITHOUT_TIMES = (
     rb"(?:(?:\w*can\d+ +|<0x)[0-9a-fA-F]{3,8}>? +\[\d\] +[0-9a-fA-F]{2}"
-    rb"|[0-9A-F]{8},[0-9A-F]{2}(?: [0-9A-F]{2}){0,7} *\r?$)"
+    rb"|[0-9A-F]{8},[0-9A-F]{2}(?: [0-9A-F]{2}){0,7} *\r?$|[0-9A-F]{3,8}#(?:[0-9A-F]{2}){0,8}\r?$)"
 )
 _MICROCHIP = rb"\d+;[RT]X;0x[0-9A-F]{3,8};\d;"
 _GIT_LFS = rb"(?:version https://git-lfs|oid sha256:|size \d+$)"

@@ -28,6 +28,7 @@ _SHOWN = re.compile(
     r"(?P<bus>[a-z]\w*)\s+(?:[TR]X\s+\S+\s+\S+\s+|[TR]X\s+)?(?P<id>[0-9A-F]{3,8})\s+"
     r"\[(?P<length>\d+)\]\s+(?P<data>(?:[0-9A-F]{2}\s*)+|remote request)"
 )
+_FLAGS = re.compile(r"##[A-Fa-f]")
 _FIRST_LINES, _REMARK = 12, "#"
 # So many lines tell whether times are steps; stamps of several buses may go back here and there.
 _SEEN_LINES, _STEPS, _BACK = 1000, 3, 0.1
@@ -115,7 +116,8 @@ class _CandumpLines(Lines):
     def changed(self, line: str) -> str:
         shown = _SHOWN.match(line)
         if shown is None:
-            return "" if line.startswith(_REMARK) else line
+            # the flags of CAN FD are a digit of base 16, of which the library reads 0 to 9
+            return "" if line.startswith(_REMARK) else _FLAGS.sub(r"##0", line)
         if shown["time"] is None:
             raise RecordingError(
                 f"{self._path}: expected times in front of the frames, found none; log with candump -L, or -t a."

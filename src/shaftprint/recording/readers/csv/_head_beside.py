@@ -25,19 +25,40 @@ class HeadBeside:
 
 
 def head_beside(lines: Sequence[str]) -> HeadBeside | None:
-    """Return the head that stands in the first columns of the first rows of a file; nothing of other files."""
+    """Return the head that stands in the first columns of the first rows of a file; nothing of other files.
+
+    A row of letters above it, as of a spreadsheet, is passed over; of several channels each has its head beside it.
+    """
     fields = [split_row(line, _DELIMITER) for line in lines[:_LINES]]
-    if not fields or plain_key(fields[0][0]) != _FIRST_KEY or not all(map(is_number, _of_row(fields[0]) or [""])):
+    first = next((row for row in fields[:2] if _FIRST_KEY in map(plain_key, row)), [])
+    begins = [place for place, field in enumerate(first) if plain_key(field) == _FIRST_KEY]
+    if not begins or begins[0] != 0 or not all(map(is_number, _of_rows(first, begins) or [""])):
         return None
-    said = {plain_key(row[0]): row[1] for row in fields if len(row) > 1 and row[0]}
-    name, unit = said.get("source") or "CH1", said.get("vertical units", "")
+    width = begins[-1] + _OF_HEAD + 2
+    names, units = [""] * width, [""] * width
+    for number, begin in enumerate(begins, start=1):
+        said = {plain_key(row[begin]): row[begin + 1] for row in fields if len(row) > begin + 1 and row[begin]}
+        unit = plain_unit(said.get("vertical units", ""))
+        names[begin + _OF_HEAD] = "time"
+        names[begin + _OF_HEAD + 1] = said.get("source") or f"CH{number}"
+        units[begin + _OF_HEAD] = said.get("horizontal units") or "s"
+        units[begin + _OF_HEAD + 1] = unit
     return HeadBeside(
-        rows=[_OF_HEAD * _DELIMITER + _DELIMITER.join(_of_row(split_row(line, _DELIMITER))) for line in lines],
-        names=(*_OF_HEAD * ("",), "time", name),
-        units=(*_OF_HEAD * ("",), said.get("horizontal units") or "s", plain_unit(unit)),
+        rows=[_without_head(split_row(line, _DELIMITER), begins, width) for line in lines],
+        names=tuple(names),
+        units=tuple(units),
     )
 
 
-def _of_row(fields: Sequence[str]) -> list[str]:
-    """Return time and value of a row."""
-    return list(fields[_OF_HEAD : _OF_HEAD + 2])
+def _without_head(fields: Sequence[str], begins: Sequence[int], width: int) -> str:
+    """Return a row with times and values alone at their places."""
+    row = [""] * width
+    for begin in begins:
+        place = begin + _OF_HEAD
+        row[place : place + 2] = [*fields[place : place + 2], "", ""][:2]
+    return _DELIMITER.join(row)
+
+
+def _of_rows(fields: Sequence[str], begins: Sequence[int]) -> list[str]:
+    """Return times and values of a row."""
+    return [field for begin in begins for field in fields[begin + _OF_HEAD : begin + _OF_HEAD + 2]]

@@ -189,6 +189,10 @@ def _first_times(table: Table, names: Sequence[str], units: Sequence[str], *, ha
     if first is None:
         return TimeColumns()
     ascends = _ascends([row[first] for row in table.rows])
+    # few digits may make two times equal
+    stays = not names[first] and bool(units[first]) and _ascends([row[first] for row in table.rows], equal=True)
+    if stays and seconds_in(units[first]) is not None:
+        return TimeColumns(place=first, unit=units[first])
     if ascends and (seconds_in(units[first]) is not None or begins_as_time(names[first]) or _is_of_next(names, first)):
         return TimeColumns(place=first, unit=units[first])
     if ascends and not names[first] and not counts_rows([row[first] for row in table.rows]):
@@ -272,8 +276,8 @@ def _of_time(unit: str) -> str:
     return unit if seconds_in(unit) is not None or seconds_in(unit.lower()) is None else unit.lower()
 
 
-def _ascends(fields: Sequence[str], share: float = 1.0) -> bool:
-    """Return whether numbers ascend, at no less than a share of the steps."""
+def _ascends(fields: Sequence[str], share: float = 1.0, *, equal: bool = False) -> bool:
+    """Return whether numbers ascend, at no less than a share of the steps; ``equal``: or stay."""
     numbers = [float(field.replace(",", ".")) for field in fields if is_number(field)]
-    ascending = sum(below > above for above, below in pairwise(numbers))
+    ascending = sum(below > above or (equal and below == above) for above, below in pairwise(numbers))
     return len(numbers) > 1 and ascending >= share * (len(numbers) - 1)

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from itertools import takewhile
 
 from shaftprint.escape import csv_cell_text, printable
 from shaftprint.recording.readers._units import seconds_in
@@ -45,6 +46,7 @@ _UNIT_ROWS = ("vunit", "v unit", "unit", "units", "vert units", "vertical units"
 _REMARK = ": "
 _REMARKS = ("comment", "comments", "remark", "remarks")
 _SCOPE_UNITS = "vertical units"
+_LIST, _SIDE_BY_SIDE = "[header]", "[column names]"
 # what Graphtec writes below a number of rows and below alarms: NO., A1234567890
 _LABELS = re.compile(r"No\.|[A-Z]{1,2}12\d+", re.IGNORECASE)
 _TOA5, _TOA5_ROWS = ("TOA5", "TOB1"), 4
@@ -60,6 +62,9 @@ def titles_and_units(lines: Sequence[str], table: Table) -> tuple[list[str], lis
         return _padded(_fields(above[1], table), table), [
             _unit(field) for field in _padded(_fields(above[2], table), table)
         ]
+    listed = _listed(lines[: table.first], table)
+    if listed is not None:
+        return listed
     export = titles_of_export(above, table)
     if export is not None:
         return export
@@ -98,6 +103,16 @@ def _joined(titles: Sequence[str], words: Sequence[str]) -> list[str]:
     return [
         title if is_time_title(title) else f"{title} {word}".strip() for title, word in zip(titles, words, strict=True)
     ]
+
+
+def _listed(lines: Sequence[str], table: Table) -> tuple[list[str], list[str]] | None:
+    """Return the names that a log of Racelogic's lists one a line, where those side by side have blanks within."""
+    rows = [line.strip().lstrip("\ufeff") for line in lines]
+    if table.delimiter != WHITE_SPACE or _LIST not in rows or _SIDE_BY_SIDE not in rows:
+        return None
+    beside = next((row for row in rows[rows.index(_SIDE_BY_SIDE) + 1 :] if row), "")
+    names = list(takewhile(bool, rows[rows.index(_LIST) + 1 :]))
+    return None if len(beside.split()) == table.width or len(names) != table.width else (names, [""] * len(names))
 
 
 def _of_scope(above: Sequence[str], table: Table) -> list[str]:
