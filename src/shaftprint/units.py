@@ -43,6 +43,8 @@ _SPELLINGS = {
     "l/h": "L/h", "l/hr": "L/h", "lph": "L/h", "litre/h": "L/h", "liter/h": "L/h",
     "m s^-1": "m/s", "mps": "m/s", "hertz": "Hz", "hz": "Hz",
 }  # fmt: skip
+# Those that a capital letter tells apart.
+_BY_LETTER = {"MNm": "MN m", "MN·m": "MN m", "MN.m": "MN m", "mNm": "mN m", "mN·m": "mN m", "mN.m": "mN m"}
 
 ANGLES_REV: Mapping[str, float] = MappingProxyType({"rev": 1.0, "deg": 1.0 / 360.0, "rad": 0.5 / math.pi})
 """Turns of a shaft for one unit of those in which angles are given [rev]."""
@@ -62,7 +64,7 @@ _QUANTITIES: tuple[Mapping[str, float], ...] = tuple(
         {"A": 1.0, "mA": 1e-3, "uA": 1e-6, "kA": 1e3},
         {"rad/s": 1.0, "deg/s": math.pi / 180.0, "rpm": 2.0 * math.pi / SECONDS_PER_MINUTE, "rev/s": 2.0 * math.pi},
         {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0, "rev": 2.0 * math.pi},
-        {**NM_PER_UNIT, "mN m": 1e-3, "N cm": 1e-2},
+        {**NM_PER_UNIT, "MN m": 1e6, "mN m": 1e-3, "N cm": 1e-2},
         {"N": 1.0, "kN": 1e3, "mN": 1e-3},
         {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
         {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "kn": M_S_PER_KNOT, "km/h": 1e3 / SECONDS_PER_HOUR},
@@ -94,7 +96,7 @@ def decibel(magnitude: _Number) -> _Number:
 def plain_unit(text: str) -> str:
     """Return a unit as vessel files write it; one that they do not know as it is."""
     text = text.strip().strip("\0").strip()
-    return _SPELLINGS.get(text.lower(), text)
+    return _BY_LETTER.get(text, _SPELLINGS.get(text.lower(), text))
 
 
 def zero_is_anywhere(unit: str) -> bool:

@@ -354,6 +354,21 @@ def test_the_unit_of_a_torque_is_named_where_another_fits(
     assert found == pytest.approx(1725.0 * factor / (0.5 if factor < 1.0 else 500.0), rel=0.1)
 
 
+@pytest.mark.parametrize(("stated", "scale", "right"), [("N m", 1000.0, "1"), ("kN m", 1e6, "1000")])
+def test_a_unit_that_is_converted_already_needs_no_scale(spoiled, vessel, campaign, stated, scale, right):
+    # half a kN m a volt, as the ship shows and the recording says
+    recording = spoiled(M_s=lambda counts: 0.5 * counts.astype(np.float64), units={"M_s": "kN m"})
+    refused(
+        recording,
+        with_gauge(vessel, unit=stated, scale_nm_per_unit=scale),
+        campaign,
+        rf"about 1000 times too large: a torque is converted from the unit of the recording .*; write scale_nm_per"
+        rf"_unit = {right} in sensors\.shaft_torque; check whether the vessel",
+    )
+    mended = with_gauge(vessel, unit=stated, scale_nm_per_unit=float(right))
+    assert prepare_signals(recording, mended, campaign).working_point.shaft_torque_nm == pytest.approx(1725.0, rel=0.1)
+
+
 def test_a_torque_of_another_ship_is_not_called_another_unit(spoiled, vessel, campaign):
     """Twenty times the torque, in N m as the recording says: 34,500 N m are no 34 % of anything."""
     recording = spoiled(M_s=lambda counts: 10.0 * counts.astype(np.float64), units={"M_s": "kN m"})

@@ -136,6 +136,49 @@ def test_what_would_fit_shows_the_torque_that_is_expected(stated, reading):
     assert gauge(stated, **fields).torque_nm(reading) == pytest.approx(1725.0, rel=0.02)
 
 
+# what a logger shows of 1725 N m in each unit, and what its file may call it
+SHOWN = {"N m": 1725.0, "Nm": 1725.0, "kN m": 1.725, "MN m": 0.001725}
+FACTORS = {"N m": 1.0, "Nm": 1.0, "kN m": 1e3, "MN m": 1e6}
+
+
+@pytest.mark.parametrize("scale", [None, 1.0, 1000.0, 998.0, 1e6, 0.001])
+@pytest.mark.parametrize("stated", SHOWN)
+@pytest.mark.parametrize("called", SHOWN)
+@pytest.mark.parametrize("meant", SHOWN)
+def test_the_scale_that_is_proposed_is_right_at_once(meant, called, stated, scale):
+    fields = {} if scale is None else {"scale_nm_per_unit": scale}
+    try:
+        sensor = gauge(stated, **fields)
+    except ValidationError:
+        # a scale near 1 of a channel in kN m is refused as such
+        assert FACTORS[stated] > abs(scale)
+        return
+    # by the definition of the units: the reading is converted from what the file calls it
+    shown = SHOWN[meant] * FACTORS[called]
+    torque_nm = float(sensor.torque_nm(shown / FACTORS[sensor.unit]))
+    fits = sensor.scale_that_fits(torque_nm, 1725.0)
+    share = torque_nm / 1725.0
+    if 0.5 < share < 2.0 or not 3e-7 < share < 3e6:
+        assert fits is None
+        return
+    changes = {"unit": stated, **dict(re.findall(r'(unit) = "([^"]+)"', fits))}
+    changes |= {"scale_nm_per_unit": float(re.search(r"scale_nm_per_unit = (\S+)", fits)[1])}
+    mended = gauge(changes.pop("unit"), **changes)
+    assert float(mended.torque_nm(shown / FACTORS[mended.unit])) == pytest.approx(1725.0, rel=3e-3)
+    # a file that calls its unit right is never said to call it wrong
+    if FACTORS[meant] == FACTORS[called]:
+        assert "that are called" not in fits
+
+
+@pytest.mark.parametrize("zero_nm", [0.0, 300.0])
+def test_a_current_in_place_of_a_torque_keeps_its_zero(zero_nm):
+    sensor = gauge("kN m", reading_at_zero=4.0, zero_nm=zero_nm)
+    reading = 4.0 + 1725.0 + zero_nm
+    fits = sensor.scale_that_fits(float(sensor.torque_nm(reading)), 1725.0)
+    fields = {name: float(value) for name, value in re.findall(r"(\w+) = ([\d.]+)", fits)}
+    assert gauge("N m", zero_nm=zero_nm, **fields).torque_nm(1e3 * reading) == pytest.approx(1725.0)
+
+
 def test_the_template_has_a_shaft_that_can_be_used(tmp_path):
     path = tmp_path / "ship.toml"
     write_template("vessel", path)

@@ -7,6 +7,9 @@ from pydantic import BeforeValidator
 
 from shaftprint.units import plain_unit, unit_factor
 
+# The unit in which a sensor is kept whose channel is in another one.
+_KEPT_AS = {"mV": "V", "uV": "V", "A": "mA", "uA": "mA", "MN m": "kN m"}
+
 
 def as_plain_unit(unit: Any) -> Any:
     """Return a unit as vessel files write it; what is no text as it is, to be refused with its field."""
@@ -17,8 +20,8 @@ PLAIN_UNIT = BeforeValidator(as_plain_unit)
 """Reads a unit in any of its spellings."""
 
 
-def in_volts_or_milliamperes(content: Any, *, per_unit: str, readings: Sequence[str] = ()) -> Any:
-    """Return the table of a sensor whose channel is in mV, uV, A or uA as that of one in V or mA.
+def in_kept_unit(content: Any, *, per_unit: str, readings: Sequence[str] = ()) -> Any:
+    """Return the table of a sensor whose channel is in mV, uV, A, uA or MN m as that of one in V, mA or kN m.
 
     ``content``: the table as it stands in the file. ``per_unit``: its field that is for one unit of the channel.
     ``readings``: its fields in the unit of the channel. What is no such table is returned as it is.
@@ -26,7 +29,7 @@ def in_volts_or_milliamperes(content: Any, *, per_unit: str, readings: Sequence[
     if not isinstance(content, Mapping):
         return content
     given = as_plain_unit(content.get("unit"))
-    wanted = {"mV": "V", "uV": "V", "A": "mA", "uA": "mA"}.get(given) if isinstance(given, str) else None
+    wanted = _KEPT_AS.get(given) if isinstance(given, str) else None
     factor = unit_factor(given, wanted) if wanted is not None else None
     if factor is None:
         return content

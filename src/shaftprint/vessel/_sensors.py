@@ -17,7 +17,7 @@ from shaftprint.vessel._local_ids import ChannelName, wrong_local_ids
 from shaftprint.vessel._machine_torque import MachineTorqueSensor
 from shaftprint.vessel._machinery import Machine
 from shaftprint.vessel._pitch_sensors import PitchSensor, PitchSetPointSensor
-from shaftprint.vessel._plain_unit import PLAIN_UNIT, in_volts_or_milliamperes
+from shaftprint.vessel._plain_unit import PLAIN_UNIT, in_kept_unit
 from shaftprint.vessel._set_point import SetPointSensor
 from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
 from shaftprint.vessel._usual import LOG_LATENCY_SHARE, LOG_SCALE_STD
@@ -81,7 +81,7 @@ class SpeedSensor(Settings):
     @classmethod
     def _teeth_of_the_wheel(cls, content: Any) -> Any:
         """Count the teeth of a wheel."""
-        content = in_volts_or_milliamperes(content, per_unit="rpm_per_unit")
+        content = in_kept_unit(content, per_unit="rpm_per_unit")
         if not isinstance(content, Mapping) or not isinstance(content.get("wheel"), str):
             return content
         counted = Wheel.parse(content["wheel"]).counted

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from shaftprint.arrays import FloatArray
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
 from shaftprint.vessel._latency import LatencySeconds
-from shaftprint.vessel._plain_unit import PLAIN_UNIT, in_volts_or_milliamperes
+from shaftprint.vessel._plain_unit import PLAIN_UNIT, in_kept_unit
 from shaftprint.vessel._usual import BEND_OF_DEMAND_STD, BEND_STD
 
 # What a channel can show in a unit; in rpm, by how much more or less than the speed of the working point.
@@ -56,8 +56,8 @@ class SetPointSensor(Settings):
 
     @model_validator(mode="before")
     @classmethod
-    def _in_volts_or_milliamperes(cls, content: Any) -> Any:
-        return in_volts_or_milliamperes(content, per_unit="v_per_unit", readings=("table_rpm",))
+    def _in_kept_unit(cls, content: Any) -> Any:
+        return in_kept_unit(content, per_unit="v_per_unit", readings=("table_rpm",))
 
     @model_validator(mode="after")
     def _can_be_volts(self) -> Self:

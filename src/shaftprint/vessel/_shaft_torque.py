@@ -13,19 +13,19 @@ from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber,
 from shaftprint.units import MILLI, NM_PER_UNIT
 from shaftprint.vessel._current_loop import ALIVE_MA
 from shaftprint.vessel._latency import LatencySeconds
-from shaftprint.vessel._plain_unit import PLAIN_UNIT, as_plain_unit, in_volts_or_milliamperes
+from shaftprint.vessel._plain_unit import PLAIN_UNIT, as_plain_unit, in_kept_unit
 from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_STD_S
 
 # A gauge whose channel is in kN m has a scale of about 1000 N m a unit; this much less is a forgotten factor.
 _SMALLEST_OF_KILO = 100.0
 _PASCAL_PER_GPA = 1e9
-# Of a torque that is a thousand times too small or large, within such a factor of what is expected, the unit is wrong.
+# Of a torque that is off by a power of a thousand, within such a factor of what is expected, the unit is wrong.
 _NEAR_THOUSAND = 3.0
-_THOUSAND = {
-    1000.0: "that is about 1000 times too small: values in kN m that are called N m? State them as kN m in the "
-    'recording or what describes it, or unit = "N m" with scale_nm_per_unit = 1000 in sensors.shaft_torque',
-    0.001: "that is about 1000 times too large: values in N m that are called kN m? State them as N m in the recording "
-    'or what describes it, or unit = "N m" with scale_nm_per_unit = 0.001 in sensors.shaft_torque',
+_POWERS = {
+    1e3: "1000 times too small",
+    1e-3: "1000 times too large",
+    1e6: "a million times too small",
+    1e-6: "a million times too large",
 }
 # What a channel can show in a unit: a current loop that is alive, what amplifiers of 10 V give, and a
 # share that is no voltage, since one with ten times the scale would look like it.
@@ -92,7 +92,7 @@ class ShaftTorqueSensor(Settings):
     channel: Name
     """Name of the channel in the recording."""
     unit: TorqueUnit
-    """Unit of the channel; Nm and kNm are read as N m and kN m, mV as V, A and uA as mA."""
+    """Unit of the channel; Nm and kNm are read as N m and kN m, MN m as kN m, mV as V, A and uA as mA."""
     scale_nm_per_unit: Number
     """Torque for one unit of the channel [N m per unit]; negative where the gauge is mounted reversed. Where it is not
     given: 1 and 1000 for a channel in N m and kN m, and that of ``shaft``."""
@@ -120,7 +120,7 @@ class ShaftTorqueSensor(Settings):
     @classmethod
     def _scale_that_follows(cls, content: Any) -> Any:
         """Fill in the scale where unit or shaft tell it."""
-        content = in_volts_or_milliamperes(content, per_unit="scale_nm_per_unit", readings=("reading_at_zero",))
+        content = in_kept_unit(content, per_unit="scale_nm_per_unit", readings=("reading_at_zero",))
         if not isinstance(content, Mapping):
             return content
         of_unit = NM_PER_UNIT.get(as_plain_unit(content.get("unit")))
@@ -201,10 +201,7 @@ class ShaftTorqueSensor(Settings):
         expected [N m], below 0 of a shaft that turns astern.
         """
         if self.unit in NM_PER_UNIT:
-            shares = {words: factor * torque_nm / expected_nm for factor, words in _THOUSAND.items()}
-            return next(
-                (words for words, share in shares.items() if 1.0 / _NEAR_THOUSAND < share < _NEAR_THOUSAND), None
-            )
+            return self._thousands_that_fit(torque_nm + self.zero_nm, expected_nm)
         reading = (torque_nm + self.zero_nm) / self.scale_nm_per_unit + self.live_zero
         full_nm = self.full_scale_nm
         for unit, scale, zero in (
@@ -222,8 +219,42 @@ class ShaftTorqueSensor(Settings):
             if not 1.0 / _NEAR < shown_nm / expected_nm < _NEAR:
                 continue
             start = f" and reading_at_zero = {zero:g}" if zero else ""
-            return f"{unit} would fit, with scale_nm_per_unit = {scale:.5g}{start} in sensors.shaft_torque"
+            return (
+                f"{unit} would fit, with scale_nm_per_unit = {scale:.5g}{start} in sensors.shaft_torque, unit as it is"
+            )
         return None
+
+    def _thousands_that_fit(self, scaled_nm: float, expected_nm: float) -> str | None:
+        """Return which scale makes a torque that is off by a power of a thousand the one that is expected.
+
+        What is proposed counts on the unit that the recording states, which is converted into that of the vessel file.
+        ``scaled_nm``: scale times reading [N m]. ``expected_nm``: as for ``scale_that_fits``.
+        """
+        factor, words = next(
+            (
+                (factor, words)
+                for factor, words in _POWERS.items()
+                if 1.0 / _NEAR_THOUSAND < (factor * scaled_nm - self.zero_nm) / expected_nm < _NEAR_THOUSAND
+            ),
+            (1.0, ""),
+        )
+        if not words:
+            return None
+        scale, usual = factor * self.scale_nm_per_unit, NM_PER_UNIT[self.unit]
+        if 1.0 / _NEAR_THOUSAND < scale / usual < _NEAR_THOUSAND:
+            return (
+                f"that is about {words}: a torque is converted from the unit of the recording into the unit of the "
+                f"vessel file before its scale is taken; write scale_nm_per_unit = {scale:.6g} in sensors.shaft_torque"
+            )
+        small, large = ("kN m", "N m") if factor > 1.0 else ("N m", "kN m")
+        # of a channel in kN m no scale near 1 is taken
+        unit, more = (self.unit, 1.0) if self.unit == "N m" else ("N m", 1000.0)
+        start = f" and reading_at_zero = {more * self.live_zero:g}" if self.live_zero else ""
+        return (
+            f"that is about {words}: values in {small} that are called {large}? State them as {small} in the recording "
+            f'or what describes it, or unit = "{unit}" with scale_nm_per_unit = {scale / more:.6g}{start} in '
+            "sensors.shaft_torque"
+        )
 
 
 def _scale_of_shaft(shaft: Any) -> float | None:

@@ -111,7 +111,8 @@ def expect_unit(channel: "Channel", vessel: "Vessel") -> None:
     torque = float(sensor.torque_nm(middle_of(channel)))
     fitting = sensor.scale_that_fits(torque, expected)
     # a torque of the other sign is no other unit: that it has the other sign is said with the working point
-    if fitting is not None and torque / expected > 0.0 and not _SMALL_PART < torque / expected < _MULTIPLE:
+    same_sign = (torque + sensor.zero_nm) / expected > 0.0
+    if fitting is not None and same_sign and not _SMALL_PART < torque / expected < _MULTIPLE:
         raise SignalError(
             f"channel {channel.name}: expected a torque around {in_nm(expected)} by working_point of the vessel file, "
             f"found {in_nm(torque)} with the unit {sensor.unit} of the vessel file; {fitting}; check "
