@@ -15,7 +15,7 @@ import click
 from shaftprint.cli._next import print_next
 from shaftprint.cli._plan_options import seconds_of
 from shaftprint.cli._terminal import answer, details, echo, print_findings, ring
-from shaftprint.cli.output._fingerprint_file import fingerprint_at
+from shaftprint.cli.output._fingerprint_file import fingerprint_of
 from shaftprint.cli.output._json import give
 from shaftprint.escape import printable
 from shaftprint.late import late
@@ -83,7 +83,7 @@ def prover(
     trial: Trial, envelope: Envelope, *, fingerprint: Path | None, slope_rpm_per_v: float | None
 ) -> Callable[[Campaign], Proof]:
     """Return what holds a campaign of a ship against its envelope, before the test and where it is changed in it."""
-    known = None if fingerprint is None else fingerprint_at(fingerprint)
+    known = fingerprint_of(trial.vessel, fingerprint)
 
     def proof_of(campaign: Campaign) -> Proof:
         return prove(campaign, trial.vessel, envelope, fingerprint=known, slope_rpm_per_v=slope_rpm_per_v)

@@ -1,5 +1,6 @@
 """Whether a ship has changed between two tests, and what: judged along causes, not number by number."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,7 @@ from shaftprint.drift._along import Whitened, p_value_of_largest, whitened
 from shaftprint.drift._causes import Cause
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause, odds_against
 from shaftprint.drift._pair import Pair, pair_of
+from shaftprint.fingerprint._design import differences_of_design, in_short
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._line_fingerprint import LineFingerprint
@@ -42,6 +44,9 @@ def differ(
     load_repeatability
         Standard deviation of the torque that a propeller takes at one speed from day to day, as a share.
     """
+    designs = differences_of_design(first.stated_fields, other.stated_fields)
+    if designs:
+        return replace(_nothing(f"{in_short(designs)}, and what differs is their design", {}), designs=designs)
     pair = pair_of(first, other, load_repeatability=load_repeatability)
     if pair is None:
         return _nothing(OF_EARLIER_VERSION, {})

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from shaftprint.digits import stated
 from shaftprint.drift._causes import Cause
+from shaftprint.fingerprint._design import DesignDifference
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
 
@@ -78,6 +79,8 @@ class Finding(Shown):
     """Causes of numbers that were left out: they are not excluded."""
     because: str = ""
     """Why nothing could be judged; empty where something was."""
+    designs: tuple[DesignDifference, ...] = ()
+    """In what the tests are of ships of two designs, of which no cause is looked for; empty of one ship or sisters."""
 
     def summary(self) -> Summary:
         """Return the most likely cause of each change with its size."""

@@ -6,6 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import frozen_float, known_part
 from shaftprint.errors import FingerprintError
+from shaftprint.fingerprint._design import expect_fingerprint_of
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._model import identified_model, named_structure
 from shaftprint.models._structure import Structure
@@ -93,10 +94,12 @@ def validate_fingerprint(
     Raises
     ------
     FingerprintError
-        If the working points of both differ by more than 2 %, or the structure has other parameters.
+        If the fingerprint is of a ship of another design than the vessel file, the working points of both differ by
+        more than 2 %, or the structure has other parameters.
     ValidationError
         If no stretch can be judged.
     """
+    expect_fingerprint_of(trial.vessel, fingerprint)
     if fingerprint.with_limits is not None and not linear:
         return _with_limits(fingerprint, measurement, trial, asked, progress=progress)
     model = fingerprint_model(fingerprint, structure or named_structure(fingerprint), measurement.signals)

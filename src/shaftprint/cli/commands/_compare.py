@@ -6,6 +6,7 @@ from pathlib import Path, PurePath
 
 import click
 
+from shaftprint.cli._command_group import end_with_no
 from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._options import OWN_FILE_HELP
 from shaftprint.cli._terminal import answer, echo, say
@@ -14,6 +15,7 @@ from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._tables import print_tables
 from shaftprint.late import late
+from shaftprint.spelling import listed
 
 with late():
     from shaftprint.catalogue._own_structure import TypedName, chosen_structures
@@ -21,12 +23,13 @@ with late():
     from shaftprint.drift._finding import Finding
     from shaftprint.drift._shared_errors import are_two_lines
     from shaftprint.drift._words import finding_sentences
+    from shaftprint.fingerprint._design import differences_of_design, in_short
     from shaftprint.fingerprint._json_file import of_a_ship
     from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.report._comparison import render_comparison
     from shaftprint.report.comparison._cause_table import cause_table
     from shaftprint.report.comparison._differences import Difference, differences
-    from shaftprint.report.comparison._tables import difference_table, stated_table
+    from shaftprint.report.comparison._tables import beside_table, difference_table, stated_table
     from shaftprint.report.comparison._vessel_file_words import vessel_file_sentences
     from shaftprint.report.sections._comparison_cover import change_in_words
 
@@ -67,7 +70,8 @@ def command(
     """Compare fingerprints: what differs, and whether by more than chance.
 
     FINGERPRINTS are two or more JSON files, or the folders in which identify or demo has put them. All are
-    compared with the first. --name and --structure may be repeated. Fingerprints of a drive are known as such.
+    compared with the first. --name and --structure may be repeated. Fingerprints of a drive are known as such. Of ships
+    of two designs the numbers stand beside each other, without causes, and the code is 3.
     """
     named = _named(fingerprints, names)
     structures = {structure.name: structure for structure in chosen_structures(own)}
@@ -81,11 +85,18 @@ def command(
             raise click.UsageError("--output is for ships; fingerprints of a drive are compared on the terminal.")
         with output_folder(output, of="compare", force=force) as folder:
             render_comparison(folder, ships, structures=structures, load_repeatability=load)
+    designs = {name: differences_of_design(first.stated_fields, other.stated_fields) for name, other in others}
     apart = {name: differences(first, other, load_repeatability=load) for name, other in others}
     along = {} if each_number else {name: differ(first, other, load_repeatability=load) for name, other in others}
     for name, other in others:
         doubtful = [label for label, one in ((first_name, first), (name, other)) if not one.verdict.trustworthy]
         words = _judged(apart[name], along.get(name), first.noun)
+        if designs[name]:
+            answer(
+                f"{first_name} and {name}: {in_short(designs[name])}: {listed([one.both for one in designs[name]])}. "
+                "What differs is their design, and no cause is looked for."
+            )
+            continue
         if doubtful:
             words = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
         lines = are_two_lines(first, other)
@@ -95,18 +106,24 @@ def command(
         answer(f"{two}{asked}{f', {name}' if len(others) > 1 else ''}? {words}")
     give("differences", apart)
     give("causes", along)
+    give("designs", designs)
     give("conditions", {name: fingerprint.tested for name, fingerprint in named.items()})
     for name, other in others:
         if name in along and not along[name].because:
             print_tables([cause_table(name, along[name])])
-        _print_tables(first_name, name, apart[name])
-        for sentence in vessel_file_sentences(first, other):
-            say(sentence)
+        if not designs[name]:
+            _print_tables(first_name, name, apart[name])
+            for sentence in vessel_file_sentences(first, other):
+                say(sentence)
+    if any(designs.values()):
+        print_tables(beside_table(ships))
     stated = stated_table(ships)
     if stated.rows:
         print_tables([stated])
     if output is not None:
         echo(f"Report: {output / REPORT}")
+    if any(designs.values()):
+        end_with_no()
 
 
 def _judged(found: tuple[Difference, ...], finding: Finding | None, noun: str) -> str:

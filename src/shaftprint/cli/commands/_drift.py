@@ -18,7 +18,9 @@ from shaftprint.cli.output._fingerprint_file import REPORT, any_fingerprint_at
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._tables import print_tables
+from shaftprint.errors import FingerprintError
 from shaftprint.late import late
+from shaftprint.spelling import listed
 from shaftprint.store._nouns import KINDS
 
 with late():
@@ -29,6 +31,7 @@ with late():
     from shaftprint.drift._history import History, history_of
     from shaftprint.drift._watch import watch
     from shaftprint.drift._words import limit_sentence, watch_sentences
+    from shaftprint.fingerprint._design import differences_of_design
     from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.report._history_page import render_history, sizes_of_tests
     from shaftprint.report.comparison._history_tables import course_table, history_table, other_course_table
@@ -158,7 +161,14 @@ def _of_files(tests: tuple[str, ...]) -> tuple[str, dict[str, LineFingerprint], 
     named = {_called(Path(path)): any_fingerprint_at(Path(path)) for path in tests}
     if len(named) < len(tests):
         raise click.UsageError("expected fingerprints in folders or files of different names, found two alike.")
-    return next(iter(named.values())).title, named, ()
+    (name, first), *others = named.items()
+    for other_name, other in others:
+        if designs := differences_of_design(first.stated_fields, other.stated_fields):
+            raise FingerprintError(
+                f"{other_name}: expected a test of {first.title}, as {name} is, found one of {other.title}: "
+                f"{listed([one.both for one in designs])}; leave it out."
+            )
+    return first.title, named, ()
 
 
 def _of_ship(ship: str, url: str, line: str | None) -> tuple[str, dict[str, LineFingerprint], tuple[Event, ...]]:

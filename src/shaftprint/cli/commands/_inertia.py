@@ -16,6 +16,7 @@ from shaftprint.files import written_whole
 from shaftprint.late import late
 
 with late():
+    from shaftprint.fingerprint._design import expect_fingerprint_of
     from shaftprint.fingerprint._inertia import inertia_beside
     from shaftprint.report.charts._pictures import save_chart
     from shaftprint.report.figures._modes import mode_chart
@@ -87,6 +88,7 @@ def _expected(ship: Vessel, fingerprint_path: Path | None) -> tuple[ExpectedIner
     if fingerprint_path is None:
         return expected_inertia(ship), ()
     fingerprint = fingerprint_at(fingerprint_path)
+    expect_fingerprint_of(ship, fingerprint, str(fingerprint_path))
     if fingerprint.conditions.vessel != ship.name:
         say(f"Mind: the fingerprint is of {fingerprint.conditions.vessel}, the vessel file of {ship.name}.\n")
     return inertia_beside(fingerprint, ship)

@@ -21,7 +21,7 @@ from shaftprint.cli._plan_options import limit_of, seconds_of, shares_of, wish_f
 from shaftprint.cli._ship_options import known_options
 from shaftprint.cli._terminal import answer, details, echo, is_detailed, print_findings, say
 from shaftprint.cli._vessel_file import checked_vessel
-from shaftprint.cli.output._fingerprint_file import REPORT, fingerprint_at
+from shaftprint.cli.output._fingerprint_file import REPORT, fingerprint_of
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import Steps
 from shaftprint.cli.output._results_options import Results, results_options
@@ -207,7 +207,7 @@ def command(
     ship = replace(
         known,
         vessel=installation,
-        first_test=None if after is None else fingerprint_at(after),
+        first_test=fingerprint_of(installation, after),
         recording=noise_from,
         recorded=noise_campaign,
         offset_v=offset_v,

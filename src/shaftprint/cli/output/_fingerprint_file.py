@@ -10,10 +10,12 @@ from shaftprint.errors import FingerprintError
 from shaftprint.late import late
 
 with late():
+    from shaftprint.fingerprint._design import expect_fingerprint_of
     from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.fingerprint._json_file import of_a_drive, of_a_ship, read_any_fingerprint
     from shaftprint.fingerprint._line_fingerprint import LineFingerprint
+    from shaftprint.vessel._vessel import Vessel
 
 
 FINGERPRINT = "fingerprint.json"
@@ -34,6 +36,18 @@ def fingerprint_at(place: Path) -> Fingerprint:
     Raises FingerprintError if there is none, it is of a drive, or the page in the folder shows another one.
     """
     return of_a_ship(any_fingerprint_at(place), named=str(fingerprint_file(place)))
+
+
+def fingerprint_of(vessel: Vessel, place: Path | None) -> Fingerprint | None:
+    """Return the fingerprint of a file or folder, of the ship of a vessel file; None where none is named.
+
+    Raises FingerprintError as ``fingerprint_at`` does, or if it is of a ship of another design.
+    """
+    if place is None:
+        return None
+    fingerprint = fingerprint_at(place)
+    expect_fingerprint_of(vessel, fingerprint, str(place))
+    return fingerprint
 
 
 def drive_fingerprint_at(place: Path) -> DriveFingerprint:

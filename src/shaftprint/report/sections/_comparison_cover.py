@@ -34,18 +34,22 @@ def comparison_cover(
     cards += [_changed(name, rows, findings[name]) for name, rows in found.items()]
     usable = all(fingerprint.verdict.trustworthy for fingerprint in fingerprints.values())
     lines = all(are_two_lines(first, other) for _, other in others)
-    state, headline = _headline(cards[2:], usable=usable, lines=lines)
+    state, headline = _headline(
+        cards[2:], usable=usable, lines=lines, designs=any(one.designs for one in findings.values())
+    )
     names = list(fingerprints)
     opening = f"{', '.join(names[1:])} {'is' if len(names) == 2 else 'are'} compared with {names[0]}."
     return Cover(headline=headline, state=state, opening=opening, cards=cards)
 
 
-def _headline(changes: Sequence[Card], *, usable: bool, lines: bool) -> tuple[State, str]:
+def _headline(changes: Sequence[Card], *, usable: bool, lines: bool, designs: bool) -> tuple[State, str]:
     if not usable:
         return "bad", "These tests cannot be compared: not all of them are trustworthy"
     states = {card.state for card in changes}
     if "look" in states:
         return "look", f"{'The lines differ' if lines else 'Something has changed'} by more than chance"
+    if "open" in states and designs:
+        return "open", "These are not sister ships: what differs is their design"
     if "open" in states:
         return "open", "Not all of these tests share a number that can be compared"
     return "fine", f"No {'difference of the lines' if lines else 'change'} is seen"
@@ -87,6 +91,8 @@ def not_alike(first: "Fingerprint", name: str, other: "Fingerprint") -> list[str
 
 def _changed(name: str, differences: "Sequence[Difference]", finding: Finding) -> Card:
     question = f"Has anything changed: {name}?"
+    if finding.designs:
+        return Card(question=question, state="open", sentence=" ".join(finding_sentences(finding)))
     if not finding.because:
         judged: State = "look" if finding.changes else "fine"
         return Card(question=question, state=judged, sentence=" ".join(finding_sentences(finding)))

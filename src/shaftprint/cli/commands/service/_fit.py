@@ -14,7 +14,7 @@ from shaftprint.cli._next import first_plan, free, print_next
 from shaftprint.cli._options import vessel_option
 from shaftprint.cli._results import print_paths
 from shaftprint.cli._vessel_file import print_disagreements
-from shaftprint.cli.output._fingerprint_file import FINGERPRINT, fingerprint_at
+from shaftprint.cli.output._fingerprint_file import FINGERPRINT, fingerprint_of
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.late import late
@@ -76,7 +76,7 @@ def command(
     """
     installation = load_vessel(vessel)
     print_disagreements(installation, vessel, is_recorded=True)
-    earlier = None if fingerprint is None else fingerprint_at(fingerprint)
+    earlier = fingerprint_of(installation, fingerprint)
     stated = None if conditions is None else load_trial_conditions(conditions)
     # the name of "." is that of the folder
     place = output.resolve()

@@ -15,7 +15,7 @@ from shaftprint.cli._options import vessel_option
 from shaftprint.cli._terminal import answer, print_findings, say
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output._file_to_write import expect_ending, expect_free
-from shaftprint.cli.output._fingerprint_file import REPORT, fingerprint_at
+from shaftprint.cli.output._fingerprint_file import REPORT, fingerprint_of
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress
@@ -80,7 +80,7 @@ def command(
     with place as folder:
         installation = load_vessel(vessel)
         print_disagreements(installation, vessel, is_recorded=True)
-        earlier = None if fingerprint is None else fingerprint_at(fingerprint)
+        earlier = fingerprint_of(installation, fingerprint)
         with progress(hidden=no_progress) as steps:
             steps.begin("Reading", total=1.0)
             found = scan(logs, installation, fingerprint=earlier, progress=steps.reach)

@@ -16,6 +16,7 @@ from shaftprint.late import late
 from shaftprint.plain_table import Column, Table
 
 with late():
+    from shaftprint.fingerprint._design import expect_fingerprint_of
     from shaftprint.service._watch import Along, Watch, watch_folders
     from shaftprint.vessel._vessel import load_vessel
 
@@ -45,7 +46,10 @@ def command(context: click.Context, days: tuple[Path, ...], *, vessel: str, agai
     draught, trim and water, and alone never gives an alarm. A change that counts ends with code 3 and what it most
     likely is.
     """
-    found = watch_folders(days, load_vessel(vessel), fingerprint_at(against), a_year=alarms)
+    installation = load_vessel(vessel)
+    known = fingerprint_at(against)
+    expect_fingerprint_of(installation, known, str(against))
+    found = watch_folders(days, installation, known, a_year=alarms)
     answer(found.headline)
     give("watch", _as_given(found))
     print_tables([_table(found)])

@@ -16,15 +16,20 @@ from shaftprint.cli.output._fingerprint_file import any_fingerprint_at, fingerpr
 from shaftprint.cli.output._json import give
 from shaftprint.errors import StoreError
 from shaftprint.late import late
+from shaftprint.spelling import listed
 
 with late():
+    from shaftprint.fingerprint._design import differences_of_design
     from shaftprint.store._add import add, refusals
+    from shaftprint.store._line_history import line_history
     from shaftprint.store._nouns import Added
     from shaftprint.store._stated import Stated
     from shaftprint.store._store import Store
 
 
 SHOWN_HASH = 12
+# So many of the newest tests of a line are looked at.
+FEWEST = 2
 
 
 @click.command("add")
@@ -66,7 +71,7 @@ def command(
                 any_fingerprint_at(place)
             added = add(store, fingerprint_file(place), now=datetime.now(UTC), stated=stated, zone=zone)
             outcomes.append(added)
-            answer(f"{place}: {_in_words(added)}")
+            answer(f"{place}: {_in_words(added)}{_of_another_design(store, added, place)}")
     give("added", outcomes)
 
 
@@ -80,6 +85,23 @@ def _opened(url: str, files: list[Path], stated: Stated, zone: tzinfo | None) ->
             others = refusals(files, now=datetime.now(UTC), stated=stated, zone=zone)
             raise StoreError(" ".join([str(refusal), *others])) from None
         yield store
+
+
+def _of_another_design(store: Store, added: Added, place: Path) -> str:
+    """Return that a fingerprint is of another ship than the other tests of its line, in words; empty where it is not.
+
+    A ship may have got another engine: it is kept, and said.
+    """
+    kept = any_fingerprint_at(place)
+    history = line_history(store, added.line.ship, line=added.line.position, newest=FEWEST)
+    for other in history.fingerprints.values():
+        if designs := differences_of_design(other.stated_fields, kept.stated_fields):
+            return (
+                f" But it is of {kept.title}, and other tests of this line are of another ship, {other.title}: "
+                f"{listed([one.both for one in designs])}. Put it into the store with its own --ship, unless that was "
+                "rebuilt."
+            )
+    return ""
 
 
 def _in_words(added: Added) -> str:

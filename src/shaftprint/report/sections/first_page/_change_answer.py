@@ -39,6 +39,13 @@ def change_answer(previous: "Fingerprint", fingerprint: "Fingerprint") -> Card:
             action="Compare with another test that can be trusted.",
         )
     finding = differ(previous, fingerprint)
+    if finding.designs:
+        return Card(
+            question=question,
+            state="open",
+            sentence=" ".join(finding_sentences(finding)),
+            action="Name an earlier test of this ship.",
+        )
     if not finding.because:
         return Card(
             question=question,
