@@ -47,6 +47,10 @@ class SignalError(ShaftprintError):
     """A channel does not give a usable signal."""
 
 
+class ForeignCampaignError(SignalError):
+    """A recording shows the set point of another campaign."""
+
+
 class ClockError(ShaftprintError):
     """The clocks of two recordings cannot be brought together."""
 

@@ -218,6 +218,15 @@ def test_headline_is_never_good_above_what_is_wrong():
     assert partly.endswith("Not all of the campaign is there: M2 is lost.")
 
 
+def test_the_campaign_of_another_test_is_told_with_the_one_that_fits(run, demo, brief_campaign):
+    result = run("inspect", demo[0] / "recording.nc", "--vessel", "stan-tug-1205", "--campaign", brief_campaign)
+    assert result.exit_code == 3
+    words = " ".join(result.stdout.split())
+    assert "this is not the campaign of this recording" in words.partition("Channels, raw")[0]
+    assert "demo/campaign.toml, which fits: name that." in words.partition("Channels, raw")[0]
+    assert "amplifier" not in words
+
+
 @pytest.mark.slow
 def test_proposal_for_a_campaign_whose_times_are_wrong(run, recording, tmp_path):
     """The recording was sailed by `short`: what is proposed in place of a wrong campaign must be that."""

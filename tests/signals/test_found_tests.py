@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import Campaign, load_campaign, setpoint
-from shaftprint.errors import SignalError
+from shaftprint.errors import ForeignCampaignError, SignalError
 from shaftprint.signals import proposed_campaign
 from shaftprint.signals.excitation._found_test import common_shift_s
 from shaftprint.signals.excitation._found_tests import found_tests
@@ -87,6 +87,44 @@ def test_a_shift_of_all_is_one_number(shift_s):
         assert test.start_s == pytest.approx(planned.start_s + shift_s, abs=0.002 if hasattr(test, "periods") else 0.02)
     # with it nothing is to be said any more
     assert findings_of(volts, proposed) == ()
+
+
+def two_legs(seed, level_v=(6.4, 3.7), period_s=33.0, phases=None):
+    """A test of two legs about two levels with steps at its end, with phases by chance."""
+    rng = np.random.default_rng(seed)
+    legs = [
+        {
+            "name": name, "level_v": level, "start_s": start, "settled_s": start + 10.0,
+            "stop_s": start + 10.0 + 9.0 * period_s, "period_s": period_s, "harmonics": [1, 3, 5, 7],
+            "amplitudes_v": [0.1, 0.05, 0.05, 0.03], "phases_rad": list(rng.uniform(-3.0, 3.0, 4)),
+        }
+        for name, level, start in (("M1", level_v[0], 10.0), ("M2", level_v[1], 330.0))
+    ]  # fmt: skip
+    stairs = {"name": "St1", "levels_v": [6.7, 6.4, 6.1, 6.4], "dwell_s": 10.0, "start_s": 660.0}
+    return Campaign.model_validate(
+        {
+            "name": f"test {seed}", "duration_s": 710.0, "offset_v": level_v[0], "ramp_v_per_s": 0.5,
+            "multisines": legs,
+            "staircases": [stairs],
+        }
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("other", [two_legs(2), two_legs(3, period_s=33.16), two_legs(4, (5.9, 2.4), 32.8)])
+def test_legs_of_another_test_are_told_as_such_although_the_steps_agree(other):
+    volts = setpoint(two_legs(1), grid(710.0))
+    with pytest.raises(ForeignCampaignError, match=r"this is not the campaign of this recording: .*\(M1, M2\)"):
+        findings_of(volts, other)
+    assert findings_of(volts, two_legs(1)) == ()
+
+
+@pytest.mark.parametrize("share", [0.015, -0.01])
+def test_legs_on_another_clock_are_of_their_campaign(share):
+    volts = setpoint(two_legs(1), (1.0 + share) * grid(710.0))
+    with pytest.raises(
+        SignalError, match=f"clock that runs {100.0 * abs(share):.2f} % {'slow' if share > 0 else 'fast'}"
+    ):
+        findings_of(volts, two_legs(1))
 
 
 def sine_volts(time, volts, name, *, phase_deg=0.0, sign=1.0, frequency_hz=None, begin_s=None, stop_s=None):

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 
 from shaftprint.cli._inspect_headline import of_propeller
 from shaftprint.cli.output._progress import progress
-from shaftprint.errors import ShaftprintError
+from shaftprint.errors import ForeignCampaignError, ShaftprintError, SignalError
 from shaftprint.late import late
 from shaftprint.reasons import Reason, doubt_scales
 
 with late():
-    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign, load_campaign
+    from shaftprint.cli._lying_files import lying_files
     from shaftprint.clocks._logger_clock import LoggerClock
     from shaftprint.design.operation._limit_use import LimitUse, limit_reasons, limit_uses, ratio_reasons, stated_limits
     from shaftprint.design.operation._recorded import recorded_operation
@@ -23,6 +26,7 @@ with late():
     from shaftprint.signals._prepare import find_tests, prepare_signals
     from shaftprint.signals._signals import Signals
     from shaftprint.signals.excitation._found_test import FoundTest
+    from shaftprint.signals.excitation._match import is_followed
     from shaftprint.spectra._spectra import Spectra, estimate_spectra
     from shaftprint.survey._legs import LegMeasurement, legs_of
     from shaftprint.vessel._vessel import Vessel
@@ -104,6 +108,27 @@ def tested(
                 of_clocks=clock_findings(clock_influences(clocks, spectra=spectra, signals=signals)),
                 hints=limit_hints(spectra.harmonics) if asked.sines else (),
             )
+        except ForeignCampaignError as error:
+            fitting = _campaign_that_fits(opened, asked, readings)
+            if fitting is None:
+                return InspectedTest(ship=ship, planned=asked, tests=tests, signals=None, spectra=None, refusal=error)
+            told = SignalError(f"{str(error).split('; name the')[0]}; it is {fitting}, which fits: name that.")
+            return InspectedTest(ship=ship, planned=asked, tests=(), signals=None, spectra=None, refusal=told)
         except ShaftprintError as error:
             # told below the tables too, which show what the campaign should be
             return InspectedTest(ship=ship, planned=asked, tests=tests, signals=None, spectra=None, refusal=error)
+
+
+def _campaign_that_fits(opened: Recording, asked: Campaign, readings: ChannelReadings) -> Path | None:
+    """Return the campaign file beside the recording, or in a folder of a plan there, that the set point follows."""
+    if "n_set" not in readings.by_name:
+        return None
+    values, clock = readings.by_name["n_set"].values, readings.clock
+    for path in reversed(lying_files(Path(opened.path).parent).campaigns):
+        with suppress(ShaftprintError):
+            campaign = load_campaign(path)
+            if campaign != asked and is_followed(
+                values, campaign.of_input(), rate_hz=clock.rate_hz, start_s=clock.start_s
+            ):
+                return path
+    return None
