@@ -188,6 +188,52 @@ def test_a_recording_that_lies_there_says_channels_and_units(run, here):
     assert vessel.logger.sample_rate_hz == pytest.approx(100.0)
 
 
+@pytest.mark.parametrize(
+    ("name", "rpm", "shaft"),
+    [
+        ("EngSpd", 1000.0, "engine"),
+        ("N1", 1000.0, "engine"),
+        ("n [Welle]", 200.0, "propeller"),
+        ("Speed", 1500.0, "engine"),
+    ],
+)
+def test_a_speed_in_rpm_is_known_by_unit_and_size(run, here, name, rpm, shaft):
+    """Rated are 1600 rpm, over 5.2: 308 rpm of the shaft. A turbocharger turns faster than either."""
+    turbo = ("TurboSpd [rpm]", lambda row: 30000.0 + row % 11)
+    logged(here, BUS[0], turbo, (f"{name} [rpm]", lambda row: rpm + row % 11), BUS[2])
+    said = run("start", "--yes", *CARD, "--lever", "0=600", "--lever", "100=1600")
+    assert "contradicts itself" not in said.output
+    assert following(said)[:5] == ["new", "campaign", "campaign.toml", "--from", "log.csv"]
+    (speed,) = load_vessel(here / "vessel.toml").sensors.speed
+    assert (speed.channel, speed.unit, speed.shaft) == (name, "rpm", shaft)
+
+
+def test_sensors_that_no_channel_can_be_are_asked_for_and_nothing_is_written(run, here):
+    two = [(f"Value {number} [rpm]", lambda row, number=number: 40000.0 + number + row % 11) for number in (1, 2)]
+    logged(here, *two, ("ShaftTorque [kN m]", lambda row: 20.0 + row % 5))
+    refused = run("start", "--yes", *CARD)
+    assert refused.exit_code == 2
+    words = " ".join(refused.stderr.split())
+    assert "--engine-speed CHANNEL (in rpm: Value 1 and Value 2)" in words
+    assert "the lever, --set-point CHANNEL" in words
+    assert "No vessel file was written" in words
+    assert [path.name for path in here.iterdir()] == ["log.csv"]
+
+
+def test_a_recording_that_cannot_be_read_leaves_no_vessel_file(run, here):
+    """Frames of a CAN bus whose DBC file was forgotten: what to do stands before what the log has."""
+    frames = "".join(f"({1e9 + 0.01 * row:.6f}) can0 18FF0280#{row % 256:02X}00000000000000\n" for row in range(2000))
+    (here / "trial.log").write_text(frames, encoding="utf-8")
+    refused = run("start", "--yes", *CARD)
+    assert refused.exit_code == 1
+    words = " ".join(refused.stderr.split())
+    assert "expected the DBC file that says what the frames hold" in words
+    assert words.index("or name it, --dbc.") < words.index("18FF0280")
+    assert "dbc=" not in words
+    assert words.endswith("; no vessel file was written.")
+    assert [path.name for path in here.iterdir()] == ["trial.log"]
+
+
 def test_what_is_stated_goes_before_the_recording_and_what_is_assumed_is_said(run, here):
     logged(here, *PULSES)
     said = run("start", "--yes", *CARD, "--torque", "M_s", "--torque-unit", "N m")

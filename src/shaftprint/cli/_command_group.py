@@ -2,6 +2,7 @@
 
 import errno
 import importlib
+import re
 from collections.abc import Mapping
 from typing import Any, ClassVar, NoReturn
 
@@ -70,6 +71,7 @@ NOT_REACHED = 3
 CHANGED = 4
 """Exit code of a command that was asked to say so, and has found that a ship has changed."""
 INTERRUPTED = 130
+_ARGUMENT = re.compile(r"\b[a-z_]+= \((--[a-z-]+(?: (?:\"[^\"]*\"|[^()\"])*)?(?:, [^()]*)?)\)")
 
 
 class LazyGroup(click.Group):
@@ -142,7 +144,7 @@ class CommandGroup(LazyGroup):
         try:
             return self._invoked(ctx)
         except ShaftprintError as error:
-            raise click.ClickException(terminal_message(str(error))) from error
+            raise click.ClickException(terminal_message(options_for_arguments(str(error)))) from error
         except click.ClickException as error:
             # click says of its own attribute that nobody is to change it
             vars(error)["message"] = terminal_message(f"{error.message}{_advice(error)}")
@@ -182,6 +184,11 @@ def _advice(error: click.ClickException) -> str:
         ": it takes one recording. `shaftprint join` puts together what one logger wrote one after the other, "
         "`shaftprint merge` what two loggers recorded at once."
     )
+
+
+def options_for_arguments(sentence: str) -> str:
+    """Return a sentence of the library as the command line says it: ``--dbc`` in place of ``dbc= (--dbc)``."""
+    return _ARGUMENT.sub(r"\1", sentence)
 
 
 def _describe(error: OSError) -> str:

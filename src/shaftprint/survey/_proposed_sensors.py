@@ -13,7 +13,9 @@ Use: TypeAlias = Literal["speed", "instrument", "encoder", "shaft_torque", "set_
 
 _SET_POINT = re.compile(r"set[ _-]*p|setpoint|demand|lever|throttle|hebel|soll|u_set|command", re.IGNORECASE)
 _TORQUE = re.compile(r"torque|m_s\b|\bms\b|koppel|drehmoment|strain", re.IGNORECASE)
-_PULSES = re.compile(r"ptm|pulse|tacho|pick|rpm|speed|drehzahl|\bn_?e", re.IGNORECASE)
+_PULSES = re.compile(r"ptm|pulse|tacho|pick|rpm|speed|spd|drehzahl|toeren|\bn_?e", re.IGNORECASE)
+# Speeds of a ship that are none of engine or propeller shaft.
+_OTHER_SPEED = re.compile(r"turbo|\btc|fan|pump|blower|thruster|bow|gen|winch|l(ü|ue)fter", re.IGNORECASE)
 _NO_RACK = re.compile(r"trim|tilt|slip", re.IGNORECASE)
 _RACK = re.compile(r"rack|load|torque|fuel|index|f(ü|ue)ll|governor|x_", re.IGNORECASE)
 _ENCODER = re.compile(r"enc|crank|shaft|counter|turn", re.IGNORECASE)
@@ -171,6 +173,7 @@ def _uses(seen: Sequence[Seen]) -> tuple[dict[str, Use | None], list[str], str]:
     """Return uses by name, the channels in % of which no name says the rack, and the set point that is left over."""
     uses = {item.channel.name: _use(item) for item in seen} | _uses_by_number(seen)
     in_percent = _of_no_name(seen, uses)
+    _speed_left(seen, uses)
     return uses, in_percent, _set_point_left(seen, uses)
 
 
@@ -220,6 +223,14 @@ def _of_no_name(seen: Sequence[Seen], uses: dict[str, Use | None]) -> list[str]:
     return racks if called is None else []
 
 
+def _speed_left(seen: Sequence[Seen], uses: dict[str, Use | None]) -> None:
+    """Take the one channel in the unit of a speed that is left for the speed where nothing is called so."""
+    free = [item.channel for item in seen if uses[item.channel.name] is None]
+    left = [one.name for one in free if one.unit in REV_S_PER_UNIT and not _OTHER_SPEED.search(one.name)]
+    if not set(_SPEEDS) & set(uses.values()) and len(left) == 1:
+        uses[left[0]] = "instrument"
+
+
 def _set_point_left(seen: Sequence[Seen], uses: dict[str, Use | None]) -> str:
     """Take the one channel in V or mA that is left for the set point where nothing is called so; return its name."""
     units = ("mA", "V")
@@ -257,7 +268,7 @@ def _use(item: Seen) -> Use | None:
         return "shaft_torque"
     if unit in NM_PER_UNIT or unit == "mV/V":
         return "shaft_torque"
-    if unit in REV_S_PER_UNIT and _PULSES.search(name):
+    if unit in REV_S_PER_UNIT and _PULSES.search(name) and not _OTHER_SPEED.search(name):
         return "instrument"
     if unit == "counts" or (unit in ANGLES_REV and _ENCODER.search(name)):
         return "encoder"

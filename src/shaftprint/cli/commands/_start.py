@@ -11,6 +11,7 @@ import click
 
 from shaftprint.cli._after_test import after_test
 from shaftprint.cli._card_options import CARD_SECTIONS, ask_card, card_of, card_options, channels_of, stated_of
+from shaftprint.cli._command_group import options_for_arguments
 from shaftprint.cli._lying_files import LyingFiles, lying_files
 from shaftprint.cli._next import VESSEL_FILE, after_drive, first_plan, free, print_steps
 from shaftprint.cli._option_sections import SectionedCommand
@@ -25,7 +26,7 @@ from shaftprint.cli._recorded_sensors import RecordedSensors, recorded_sensors, 
 from shaftprint.cli._terminal import answer, echo, print_findings
 from shaftprint.cli._vessel_file import print_disagreements, write_from_card
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
-from shaftprint.errors import ShaftprintError
+from shaftprint.errors import RecordingError, ShaftprintError
 from shaftprint.late import late
 
 with late():
@@ -50,7 +51,8 @@ def command(folder: Path, *, yes: bool, **said: object) -> None:
     sensors and lever are asked for step by step, and vessel.toml is written; options answer beforehand, as those of
     `shaftprint new vessel`. Needed are power, rated speed, cylinders, ratio, and diameter, blades and pitch of the
     propeller; channels and units come from a recording that lies there. From then on each command ends with the next
-    one. A motor or another drive has a drive file in place of the vessel file.
+    one. A motor or another drive has a drive file in place of the vessel file. Where the recording cannot be read, or
+    lacks a sensor, nothing is written.
     """
     lying = lying_files(folder)
     _print(lying)
@@ -66,13 +68,12 @@ def command(folder: Path, *, yes: bool, **said: object) -> None:
         if steps is not None:
             print_steps(*steps)
             return
-        if yes and is_said and recorded.options:
-            of_card = with_recorded(of_card, recorded.options, lying.recordings[-1])
+        if recorded.refusal:
+            raise RecordingError(f"{recorded.refusal.rstrip('.')}; no vessel file was written.")
+        if yes and is_said and recorded.channels:
+            of_card = with_recorded(of_card, recorded, lying.recordings[-1])
         asked = of_card if yes else _asked(of_card, recorded.options)
         vessel = _written(folder, asked, lying, recorded)
-        if recorded.refusal:
-            print_steps(("inspect", lying.recordings[-1], *words, "--vessel", vessel))
-            return
     else:
         words = reading_words(**reading)
         if is_said:
@@ -95,10 +96,8 @@ def _recorded(
     if recorded.refusal and rate_hz is not None:
         reading = {**reading, "sample_rate": rate_hz}
         recorded = recorded_sensors(file, hints_of(**reading))
-    if recorded.refusal:
-        print_findings("The recording cannot be read", [recorded.refusal], is_answer=True)
     for remark in recorded.remarks:
-        answer(f"{file}: {remark}")
+        answer(f"{file}: {options_for_arguments(remark)}")
     return recorded, reading
 
 

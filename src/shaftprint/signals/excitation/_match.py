@@ -250,8 +250,8 @@ def _clock_words(
     def alike(share: float) -> float:
         # about the mean of each test: that two legs are at two levels makes no campaign
         planned = [setpoint(campaign, (1.0 + share) * one) for one in times_s]
-        about = [np.concatenate([one - one.mean() for one in values]) for values in (planned, measured)]
-        return float(np.corrcoef(*about)[0, 1])
+        asked, shown = (np.concatenate([one - one.mean() for one in values]) for values in (planned, measured))
+        return float(np.corrcoef(asked, shown)[0, 1])
 
     share = 0.0
     for reach, step in ((_WIDEST_CLOCK, _CLOCK_STEP), (_CLOCK_STEP, 0.1 * _CLOCK_STEP)):

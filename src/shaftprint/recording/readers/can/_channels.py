@@ -132,7 +132,7 @@ def _left_out(streams: Streams, signals: list[tuple[Stream, Signal]], names: tup
 
 
 def _knower(database: Database) -> str:
-    return f"{database.name} does not know" if database.name else "nothing says of without a DBC file (--dbc)"
+    return f"{database.name} does not know" if database.name else "nothing says of"
 
 
 def _in_words(identifier: int) -> str:

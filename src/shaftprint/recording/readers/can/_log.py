@@ -71,9 +71,9 @@ def expect_known(path: Path, taken: Decoded, chosen: Chosen) -> None:
             "take the DBC file of this ship."
         )
     raise RecordingError(
-        f"{path}: expected messages of engine, gearbox or rudder by SAE J1939 or NMEA 2000, found none of them in the "
-        f"log{in_brackets}; give the DBC file that says what the frames hold, dbc= (--dbc), "
-        f"or lay it beside as {dbc_path(path).name}."
+        f"{path}: expected the DBC file that says what the frames hold, as none is of engine, gearbox or rudder "
+        f"by SAE J1939 or NMEA 2000; lay it beside as {dbc_path(path).name}, or name it, dbc= (--dbc). The log "
+        f"has {unknown or 'no frame'}."
     )
 
 
