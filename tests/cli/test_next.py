@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from shaftprint.campaign import load_campaign
+from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.cli import _after_test
-from shaftprint.cli._after_test import after_test
+from shaftprint.cli._after_test import after_test, reach_of
 from shaftprint.errors import FingerprintError
 from shaftprint.reasons import Reason
 from shaftprint.vessel import load_vessel
@@ -87,6 +87,8 @@ def test_the_first_of_several_next_commands_is_the_next_one_for_a_program(run, h
     assert [line.split()[1] for line in document["then"]] == ["identify"]
 
 
+# 0.9 mA of a lever that asks for 1067 rpm more over 16 mA
+LIMITS = SimpleNamespace(set_point_rpm=60.01875)
 STDS = {"t_d": 0.004, "g": 0.02}
 
 
@@ -135,7 +137,7 @@ def test_a_test_is_validated_and_then_the_next_one_is_planned(here):
 def test_a_plan_goes_on_while_a_wish_of_it_is_not_met(here, monkeypatch, targets, goes_on):
     (here / "plan").mkdir()
     (here / "plan" / "plan.json").write_text("{}")
-    planned = SimpleNamespace(plan=SimpleNamespace(targets=targets, stairs_rpm=()))
+    planned = SimpleNamespace(plan=SimpleNamespace(targets=targets, stairs_rpm=(), limits=LIMITS))
     monkeypatch.setattr(_after_test, "_plan_json", SimpleNamespace(PLAN="plan.json", read_plan=lambda folder: planned))
     campaign = here / "plan" / "campaign.toml"
     last = [str(word) for word in following(campaign)[-1]]
@@ -143,12 +145,26 @@ def test_a_plan_goes_on_while_a_wish_of_it_is_not_met(here, monkeypatch, targets
         assert last == ["continue", "log.csv", "--plan", str(here / "plan"), "--vessel", "ship.toml"]
     else:
         assert last[0] == "plan"
+        # what was allowed then, not what is usual
+        assert last[last.index("--limit") + 1] == "set-point=60rpm"
+
+
+def test_a_planned_campaign_alone_says_how_far_it_goes(here):
+    """A leg of one line of 0.2 V about its level, at 250 rpm a volt: 50 rpm."""
+    leg = {
+        "name": "M1", "level_v": -5.0, "start_s": 10.0, "settled_s": 20.0, "stop_s": 60.0, "period_s": 10.0,
+        "harmonics": [3], "amplitudes_v": [0.2], "phases_rad": [0.0],
+    }  # fmt: skip
+    content = {"name": "t", "duration_s": 70.0, "offset_v": -5.0, "ramp_v_per_s": 1.0, "multisines": [leg]}
+    asked = Campaign.model_validate({**content, "slope_rpm_per_v": -250.0, "offset_rpm": 1200.0})
+    assert reach_of("none.toml", asked) in ("50rpm", "49.9rpm", "50.1rpm")
+    assert reach_of("none.toml", Campaign.model_validate(content)) == ""
 
 
 @pytest.mark.parametrize(("sentences", "is_validated"), [(["The steps may prove nothing."], False), ([], True)])
 def test_steps_that_the_plan_says_prove_nothing_are_not_offered(here, monkeypatch, sentences, is_validated):
     (here / "plan.json").write_text("{}")
-    planned = SimpleNamespace(plan=SimpleNamespace(targets={}))
+    planned = SimpleNamespace(plan=SimpleNamespace(targets={}, limits=LIMITS))
     monkeypatch.setattr(_after_test, "_plan_json", SimpleNamespace(PLAN="plan.json", read_plan=lambda folder: planned))
     monkeypatch.setattr(_after_test, "_hidden", SimpleNamespace(stairs_sentences=lambda plan: sentences))
     commands = [words[0] for words in following(here / "campaign.toml")]

@@ -51,7 +51,7 @@ def after_test(
         if kinds & _OTHER_STRUCTURE:
             readable, steps = read_by_all(recording, reading)
             return [*steps, ("compare-structures", readable, "--vessel", vessel, "--campaign", campaign)]
-        return [first_plan(vessel, ship)] if kinds & _LACKS_LINES else []
+        return [first_plan(vessel, ship, reach_of(campaign, asked))] if kinds & _LACKS_LINES else []
     plan = _plan_of(Path(campaign))
     goes_on = plan is not None and any(_is_open(fingerprint, *target) for target in plan.targets.items())
     tells = not is_undecided and not (plan is not None and _hidden.stairs_sentences(plan))
@@ -60,8 +60,27 @@ def after_test(
     if is_validated:
         steps += [("validate", readable, "--vessel", vessel, "--campaign", campaign, "--fingerprint", result, *own)]
     if not goes_on:
-        return [*steps, (*plan_after(result, vessel, ship), *own)]
+        return [*steps, (*plan_after(result, vessel, ship, reach_of(campaign, asked)), *own)]
     return [*steps, ("continue", readable, "--plan", Path(campaign).parent, "--vessel", vessel, *own)]
+
+
+def reach_of(campaign: str | Path, asked: Campaign) -> str:
+    """Return how far the set point may go from its levels, such as ``60rpm``; empty where no plan says it.
+
+    It is the limit of the plan that the campaign is of; of a campaign alone that was planned, as far as it goes itself.
+    ``campaign``, ``asked``: the campaign file, and what is in it.
+    """
+    plan = _plan_of(Path(campaign))
+    if plan is not None:
+        return _rpm(plan.limits.set_point_rpm)
+    if not asked.legs or asked.slope_rpm_per_v is None:
+        return ""
+    deviations_v = [abs(end - leg.level_v) for leg in asked.legs for end in leg.extremes_v]
+    return _rpm(abs(asked.slope_rpm_per_v) * max(deviations_v))
+
+
+def _rpm(value: float) -> str:
+    return f"{float(f'{value:.3g}'):g}rpm"
 
 
 def _plan_of(campaign: Path) -> Plan | None:

@@ -81,28 +81,34 @@ def free(name: str) -> Path:
     return path
 
 
-def plan_words(vessel: object, *, has_lever: bool, rated_rpm: float | None) -> tuple[object, ...]:
+def plan_words(vessel: object, *, has_lever: bool, rated_rpm: float | None, reach: str = "") -> tuple[object, ...]:
     """Return the words of ``plan`` for the first test of a ship.
 
     ``vessel``: its vessel file. ``has_lever``: whether the file says which speed the lever asks for; otherwise the
-    command leaves room for it. ``rated_rpm``: rated speed of the engine [rpm]; None where there is none.
+    command leaves room for it. ``rated_rpm``: rated speed of the engine [rpm]; None where there is none. ``reach``: as
+    of ``plan_after``.
     """
     lever = () if has_lever else ("--rpm-per-volt", "RPM", "--offset", "VOLT")
-    return ("plan", "--vessel", vessel, *_size(rated_rpm), *lever, "-o", free("plan"))
+    return ("plan", "--vessel", vessel, *_size(rated_rpm, reach), *lever, "-o", free("plan"))
 
 
-def first_plan(vessel: object, ship: Vessel) -> tuple[object, ...]:
-    """Return the words of ``plan`` for the first test of a ship, by its vessel file and what is in it."""
+def first_plan(vessel: object, ship: Vessel, reach: str = "") -> tuple[object, ...]:
+    """Return the words of ``plan`` for the first test of a ship, by its vessel file and what is in it.
+
+    ``reach``: as of ``plan_after``.
+    """
     has_lever = ship.sensors.set_point.volts_for(ship.working_point.engine_speed_rpm) is not None
-    return plan_words(vessel, has_lever=has_lever, rated_rpm=rated_rpm_of(ship))
+    return plan_words(vessel, has_lever=has_lever, rated_rpm=rated_rpm_of(ship), reach=reach)
 
 
-def plan_after(result: object, vessel: object, ship: Vessel) -> tuple[object, ...]:
+def plan_after(result: object, vessel: object, ship: Vessel, reach: str = "") -> tuple[object, ...]:
     """Return the words of ``plan`` for the next test of a ship.
 
-    ``result``: what its last test gave. ``vessel``, ``ship``: its vessel file, and what is in it.
+    ``result``: what its last test gave. ``vessel``, ``ship``: its vessel file, and what is in it. ``reach``: how far
+    its set point may go from a level, such as ``60rpm``; a usual one where it is not known.
     """
-    return ("plan", "--vessel", vessel, "--after", result, *_size(rated_rpm_of(ship)), "-o", free("next-plan"))
+    size = _size(rated_rpm_of(ship), reach)
+    return ("plan", "--vessel", vessel, "--after", result, *size, "-o", free("next-plan"))
 
 
 def after_drive(drive: object, result: object) -> tuple[object, ...]:
@@ -118,7 +124,7 @@ def rated_rpm_of(ship: Vessel) -> float:
     return ship.machine.rated_speed_rpm
 
 
-def _size(rated_rpm: float | None) -> tuple[object, ...]:
+def _size(rated_rpm: float | None, reach: str = "") -> tuple[object, ...]:
     # small beside the speed, so that the line stays linear, and large beside its noise
-    reach = "100rpm" if rated_rpm is None else f"{round(0.06 * rated_rpm, -1):.0f}rpm"
-    return ("--within", FIRST_LENGTH, "--limit", f"set-point={reach}")
+    usual = "100rpm" if rated_rpm is None else f"{round(0.06 * rated_rpm, -1):.0f}rpm"
+    return ("--within", FIRST_LENGTH, "--limit", f"set-point={reach or usual}")

@@ -156,7 +156,7 @@ def _whittle(lags: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
     ahead = behind = lags[0]
     fits = [(forward, ahead)]
     for order in range(1, lags.shape[0]):
-        gap = lags[order] - sum((a @ lags[order - 1 - k] for k, a in enumerate(forward)), np.zeros_like(ahead))
+        gap = lags[order] - (forward @ lags[order - 1 : 0 : -1]).sum(axis=0)
         last, first = gap @ np.linalg.inv(behind), gap.T @ np.linalg.inv(ahead)
         old = forward
         forward = np.concatenate([forward - last @ backward[::-1], last[None]])

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._after_test import reach_of
 from shaftprint.cli._command_group import end_with_no
 from shaftprint.cli._drive_judge import validate_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
@@ -34,14 +35,13 @@ with late():
     from shaftprint.survey._measurement import measure
     from shaftprint.survey._of_vessel import default_structure
     from shaftprint.survey._survey import settings_by_name
-    from shaftprint.survey._trial import load_trial
+    from shaftprint.survey._trial import Trial, load_trial
     from shaftprint.survey._validate import Asked, validate_fingerprint
     from shaftprint.tables._validation import excerpt_name, misfit_table, models_table, step_number_table
     from shaftprint.validation._foreign import ForeignModel
     from shaftprint.validation._model import identified_model
     from shaftprint.validation._thesis_models import thesis_models
     from shaftprint.validation._validation import Validation
-    from shaftprint.vessel._vessel import Vessel
 
 
 @click.command(
@@ -204,13 +204,13 @@ def command(
         print_table(models_table(validations))
     if output is not None:
         echo(f"Figures: {output}")
-    _print_next(recording, vessel, campaign, fingerprint, trial.vessel, first)
+    _print_next(recording, vessel, campaign, fingerprint, trial, first)
     if first.outcome == "fails":
         end_with_no()
 
 
 def _print_next(
-    recording: Path, vessel: str, campaign: str, fingerprint: Path | None, ship: Vessel, found: Validation
+    recording: Path, vessel: str, campaign: str, fingerprint: Path | None, trial: Trial, found: Validation
 ) -> None:
     """Print the next command: what identifies, what the model lacks where it fails, or the next test."""
     files = (recording, "--vessel", vessel, "--campaign", campaign)
@@ -219,7 +219,7 @@ def _print_next(
     elif found.outcome == "fails":
         print_next("limits", *files)
     else:
-        print_next(*plan_after(fingerprint, vessel, ship))
+        print_next(*plan_after(fingerprint, vessel, trial.vessel, reach_of(campaign, trial.campaign)))
 
 
 def print_validation(validation: Validation) -> None:

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
-from shaftprint.identify.search._levenberg_marquardt import SMALLEST_SCALE, TINY, diagonals, quadratic, times
+from shaftprint.identify.search._levenberg_marquardt import SMALLEST_SCALE, TINY, Residuals, diagonals, quadratic, times
 from shaftprint.identify.uncertainty._numbers import Numbers
 
 ROUNDS = 200
@@ -113,7 +113,9 @@ class _Climb:
         """Return the ends of some of the rows, found from one parameter set or each from its own."""
         numbers = self.numbers.chosen(rows)
         lower, upper = numbers.objective.lower, numbers.objective.upper
-        at = _Position.at_start(self, rows, theta)
+        # states in which a record begins follow those of the row's last place
+        residuals = numbers.objective.following(rows.size)
+        at = _Position.at_start(self, rows, theta, residuals)
         theta = at.theta.copy()
         is_open, failed, stretch = np.zeros(rows.size, np.bool_), np.zeros(rows.size, np.bool_), np.ones(rows.size)
         for _ in range(ROUNDS):
@@ -129,7 +131,8 @@ class _Climb:
                 at, step = at.chosen(~done), step.chosen(~done)
                 if at.rows.size == 0:
                     break
-            at.advance(numbers, np.minimum(np.maximum(at.theta + step.delta, lower), upper), step)
+            trial = np.minimum(np.maximum(at.theta + step.delta, lower), upper)
+            at.advance(numbers, trial, step, residuals(trial, at.rows))
         theta[at.rows] = at.theta
         is_open[at.rows], failed[at.rows], stretch[at.rows] = _short_of(at, lower, upper)
         value = numbers.values(theta)
@@ -230,13 +233,11 @@ class _Position:
     growth: FloatArray
 
     @classmethod
-    def at_start(cls, climb: _Climb, rows: IntArray, theta: FloatArray) -> "_Position":
+    def at_start(cls, climb: _Climb, rows: IntArray, theta: FloatArray, residuals: Residuals) -> "_Position":
         """Return the position of some of the rows before their first step, at one parameter set or each at its own."""
         numbers, side = climb.numbers.chosen(rows), climb.side[rows]
-        sets = np.atleast_2d(theta)
-        one_each = (np.zeros_like(rows) if sets.shape[0] == 1 else np.arange(rows.size),)
-        cost, gradient, hessian = (part[one_each] for part in quadratic(*numbers.objective.residuals(sets)))
-        theta = sets[one_each]
+        theta = np.array(np.broadcast_to(theta, (rows.size, theta.shape[-1])))
+        cost, gradient, hessian = quadratic(*residuals(theta, np.arange(rows.size)))
         estimate = np.broadcast_to(climb.start, theta.shape)
         return cls(
             rows=np.arange(rows.size),
@@ -263,10 +264,13 @@ class _Position:
         """Return some of the rows."""
         return _Position(*(getattr(self, name)[rows] for name in self.__slots__))
 
-    def advance(self, numbers: Numbers, trial: FloatArray, step: _Step) -> None:
-        """Go to the trials that lie further or nearer to the contour; damp the other rows."""
+    def advance(self, numbers: Numbers, trial: FloatArray, step: _Step, found: tuple[FloatArray, FloatArray]) -> None:
+        """Go to the trials that lie further or nearer to the contour; damp the other rows.
+
+        ``found``: residuals and Jacobian there.
+        """
         numbers_of_rows = numbers.chosen(self.rows)
-        cost, gradient, hessian = quadratic(*numbers.objective.residuals(trial))
+        cost, gradient, hessian = quadratic(*found)
         value = self.side * numbers_of_rows.values(trial)
         excess = np.maximum(cost, self.limit) - np.maximum(self.cost, self.limit)
         slope = self.side[:, None] * numbers_of_rows.slopes(trial, diagonals(hessian))
