@@ -218,6 +218,50 @@ def test_headline_is_never_good_above_what_is_wrong():
     assert partly.endswith("Not all of the campaign is there: M2 is lost.")
 
 
+@pytest.fixture
+def ship(demo, tmp_path):
+    """Write the vessel file of the short demo with other words in it."""
+
+    def write(old, new):
+        text = (demo[0] / "vessel.toml").read_text(encoding="utf-8")
+        assert old in text
+        path = tmp_path / "ship.toml"
+        path.write_text(text.replace(old, new, 1), encoding="utf-8")
+        return path
+
+    return write
+
+
+def test_a_vessel_file_that_cannot_be_is_not_good_enough(run, demo, ship):
+    """The tug has 221 kW: in W it is refused with the number, and of a third the file contradicts itself."""
+    files = (demo[0] / "recording.nc", "--campaign", demo[0] / "campaign.toml", "--vessel")
+    refused = run("inspect", *files, ship("rated_power_kw = 221", "rated_power_kw = 221000"))
+    assert refused.exit_code == 1
+    assert "expected rated_power_kw near 2" in refused.stderr
+    assert "found 221000; in W?" in refused.stderr
+    doubted = run("inspect", *files, ship("rated_power_kw = 221", "rated_power_kw = 70"))
+    assert doubted.exit_code == 3
+    assert "Not as it is. The vessel file contradicts itself, as said above: correct it first." in " ".join(
+        doubted.output.split()
+    )
+
+
+def test_another_rate_and_another_ship_than_the_recording_says_are_said(run, demo, ship):
+    """The demo is logged at 2000 Hz on the Stan Tug 1205."""
+    said = run("inspect", demo[0] / "recording.nc", "--vessel", ship("sample_rate_hz = 2000", "sample_rate_hz = 1000"))
+    assert "logger.sample_rate_hz: 1000 in the vessel file, 2000 Hz in the recording" in " ".join(said.output.split())
+    other = ship('name = "Stan Tug 1205, port"', 'name = "Vega"')
+    said = run("inspect", demo[0] / "recording.nc", "--vessel", other)
+    words = "his recording is of Stan Tug 1205, port, the vessel file of Vega"
+    assert f"T{words}." in " ".join(said.output.split())
+    text = other.read_text(encoding="utf-8").replace('channel = "PTM_e"', 'channel = "Impuls"')
+    other.write_text(text, encoding="utf-8")
+    refused = run("inspect", demo[0] / "recording.nc", "--vessel", other)
+    assert f'recording.nc: t{words}: expected a channel "Impuls"' in refused.stderr
+    for right in ("Not as the vessel file says", "his recording is of"):
+        assert right not in run("inspect", demo[0] / "recording.nc", "--vessel", demo[0] / "vessel.toml").output
+
+
 def test_the_campaign_of_another_test_is_told_with_the_one_that_fits(run, demo, brief_campaign):
     result = run("inspect", demo[0] / "recording.nc", "--vessel", "stan-tug-1205", "--campaign", brief_campaign)
     assert result.exit_code == 3

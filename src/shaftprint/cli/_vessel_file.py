@@ -20,8 +20,10 @@ with late():
 _SHOWN = 8
 
 
-def print_disagreements(vessel: Vessel, file: str, *, is_recorded: bool = False) -> None:
+def print_disagreements(vessel: Vessel, file: str, *, is_recorded: bool = False) -> bool:
     """Print what in a vessel file contradicts itself, as part of the answer, and what is strange; nothing else.
+
+    Return whether something contradicts itself.
 
     ``vessel``, ``file``: what was read, and the path or name of a shipped file it was read from. ``is_recorded``:
     whether it is of a recording that is there.
@@ -33,6 +35,7 @@ def print_disagreements(vessel: Vessel, file: str, *, is_recorded: bool = False)
     strange = [one.sentence(file) for one in found if not one.is_contradiction]
     if strange:
         print_findings("Findings on the vessel file", strange)
+    return bool(contradictions)
 
 
 def checked_vessel(file: str) -> Vessel:

@@ -45,19 +45,22 @@ def find_channel(
     way_out: str = "correct the name there",
     takes_messages: bool = False,
     sensors: "Sensors | None" = None,
+    ship: str = "",
 ) -> "Channel":
     """Return a channel that holds samples in the expected unit, into which one of the same quantity is converted.
 
     ``recording``: where to look. ``name``: name of the channel, from the vessel file. ``unit``: unit that the vessel
     file gives for it; spaces and multiplication dots do not count. ``use``: what the channel is needed for, in words.
     ``way_out``: what to do where the channel is missing, in words. ``takes_messages``: whether messages at times of
-    their own will do. ``sensors``: all of the vessel file, whose channels are taken. Raises SignalError if the channel
-    is missing, empty, in another unit, or on no clock where it has to be.
+    their own will do. ``sensors``: all of the vessel file, whose channels are taken. ``ship``: whose file it is. Raises
+    SignalError if the channel is missing, empty, in another unit, or on no clock where it has to be.
     """
     if name not in recording.channels:
+        other = other_ship(recording, ship)
+        of_ship = f"{other}: " if other else ""
         raise MissingChannel(
-            f'{recording.path}: expected a channel "{name}" for the {use}, as the vessel file says, '
-            f"found {', '.join(recording.channels) or 'no channel at all'}; {way_out}."
+            f'{recording.path}: {of_ship}expected a channel "{name}" for the {use}, as the vessel '
+            f"file says, found {', '.join(recording.channels) or 'no channel at all'}; {way_out}."
         )
     channel = recording.channels[name]
     if not channel.unit:
@@ -77,6 +80,12 @@ def find_channel(
     if not takes_messages:
         expect_one_clock(channel, f"the {use}")
     return channel
+
+
+def other_ship(recording: "Recording", ship: str) -> str:
+    """Return that a recording is of another ship than a vessel file, in words; empty where it is not, or not said."""
+    of = recording.attributes.get("vessel", "")
+    return f"this recording is of {of}, the vessel file of {ship}" if of and ship and of != ship else ""
 
 
 def expect_one_clock(channel: "Channel", use: str) -> None:

@@ -35,6 +35,9 @@ Curve = tuple[tuple[float, ...], tuple[float, ...]]
 # Points by which constant power is drawn from base speed on: chords over 4 % of the speed are off by 0.02 %.
 _POWER_POINTS, _POWER_STEP = 16, 1.04
 
+# A power that is off by a thousand within such a factor is in another unit.
+_LIKE = 3.0
+
 
 class Machine(Settings):
     """What turns the line and what all of shaftprint asks of it, whether it burns fuel or takes current."""
@@ -101,6 +104,7 @@ class Engine(Machine):
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         errors = []
+        turn = 2.0 * math.pi * rev_s_from_rpm(self.rated_speed_rpm)
         if self.idle_speed_rpm >= self.rated_speed_rpm:
             errors.append(
                 f"expected idle_speed_rpm below rated_speed_rpm = {self.rated_speed_rpm:g}, "
@@ -116,6 +120,14 @@ class Engine(Machine):
             )
         if any(later <= earlier for earlier, later in pairwise(self.full_load_speed_rpm)):
             errors.append("expected ascending speeds in full_load_speed_rpm.")
+        elif speeds == torques:
+            in_thousands = self.full_load_nm(self.rated_speed_rpm) / self.rated_torque_nm
+            for factor, unit in ((1e-3, "W"), (1e3, "MW")):
+                if 1.0 / _LIKE < in_thousands / factor < _LIKE:
+                    errors.append(
+                        f"expected rated_power_kw near {1e-3 * self.full_load_nm(self.rated_speed_rpm) * turn:.4g} kW, "
+                        f"as full_load_torque_nm gives at rated speed, found {self.rated_power_kw:g}; in {unit}?"
+                    )
         if errors:
             raise ValueError(" ".join(errors))
         return self

@@ -34,6 +34,7 @@ with late():
     from shaftprint.recording._read import read_recording
     from shaftprint.recording._recording import Recording
     from shaftprint.signals._channel_readings import ChannelReadings, read_channels
+    from shaftprint.signals._channels import other_ship
     from shaftprint.signals._contradictions import contradictions
     from shaftprint.signals._inspect import ChannelReport, channel_reports
     from shaftprint.spectra._spectra import Spectra
@@ -45,6 +46,8 @@ with late():
 
 
 _MOST_GAPS = 20
+# Clocks of loggers differ by less.
+_SAME_RATE = 0.01
 # Rows of a table that is read, and not looked up.
 _MOST_LINES = 40
 
@@ -81,8 +84,7 @@ def command(
         raise click.UsageError("--output is the campaign of --campaign as the recording shows it: name that too.")
     ship = None if vessel is None else load_vessel(vessel)
     planned = None if campaign is None else load_campaign(campaign)
-    if ship is not None and vessel is not None:
-        print_disagreements(ship, vessel, is_recorded=True)
+    is_impossible = ship is not None and vessel is not None and print_disagreements(ship, vessel, is_recorded=True)
     reading = reading_words(**said)
     with read_recording(recording, **hints_of(**said)) as opened:
         clocks = logger_clocks(opened)
@@ -97,7 +99,9 @@ def command(
             return
         test = None if planned is None else tested(opened, ship, planned, readings, clocks, hidden=no_progress)
         reports = channel_reports(readings, levels)
-        good = _print_answer(test, reports, ship, missing=readings.missing)
+        good = _print_answer(test, reports, ship, missing=readings.missing, is_impossible=is_impossible)
+        if other := _other_than_said(opened, ship):
+            print_findings("Not as the vessel file says", other)
         _print_channels(opened, levels)
         _print_converted(opened, readings)
         print_tables([clock_map_table(clocks)])
@@ -154,9 +158,17 @@ def _print_proposal(opened: Recording, seen: Sequence[Seen], clocks: Sequence[Lo
 
 
 def _print_answer(
-    test: InspectedTest | None, reports: Sequence[ChannelReport], ship: Vessel, *, missing: Sequence[str] = ()
+    test: InspectedTest | None,
+    reports: Sequence[ChannelReport],
+    ship: Vessel,
+    *,
+    missing: Sequence[str] = (),
+    is_impossible: bool = False,
 ) -> bool:
-    """Print whether the recording is good enough, and what is wrong with its sensors; return whether it is."""
+    """Print whether the recording is good enough, and what is wrong with its sensors; return whether it is.
+
+    ``is_impossible``: whether the vessel file contradicts itself.
+    """
     signals, asked = (None, None) if test is None else (test.signals, test.planned)
     is_good = False
     wrong = contradictions(reports, ship, signals=signals, campaign=asked)
@@ -176,7 +188,8 @@ def _print_answer(
     if test is not None:
         refusal = "" if test.refusal is None else str(test.refusal)
         lost = () if test.signals is None else lost_parts(test.planned, test.signals, test.parts)
-        worst = next(iter((*wrong, *against)), "") or refusal
+        of_file = "The vessel file contradicts itself, as said above: correct it first." if is_impossible else ""
+        worst = next(iter((*wrong, *against)), "") or refusal or of_file
         is_good = is_good_enough(test.parts, worst=worst)
         answer(headline(test.parts, planned=lines_of(test.planned), worst=worst, lost=lost))
         echo()
@@ -239,6 +252,26 @@ def _print_converted(opened: Recording, readings: ChannelReadings) -> None:
     ]
     if sentences:
         print_findings("Other units", sentences)
+
+
+def _other_than_said(opened: Recording, ship: Vessel) -> list[str]:
+    """Return that the recording says another ship than the vessel file, or pulses come at another rate than it has."""
+    other = other_ship(opened, ship.name)
+    return [*([f"{other[:1].upper()}{other[1:]}."] if other else []), *_other_rate(opened, ship)]
+
+
+def _other_rate(opened: Recording, ship: Vessel) -> list[str]:
+    """Return that pulses were logged at another rate than the vessel file has; a plan and a simulation count on it."""
+    stated_hz = None if ship.logger is None else ship.logger.sample_rate_hz
+    pulses = [sensor.channel for sensor in ship.sensors.speed if sensor.gives_pulses]
+    logged = [opened.channels[name] for name in pulses if name in opened.channels]
+    rates = {channel.rate_hz for channel in logged if channel.stamps is None}
+    if stated_hz is None or not rates or abs(max(rates) / stated_hz - 1.0) < _SAME_RATE:
+        return []
+    return [
+        f"logger.sample_rate_hz: {stated_hz:g} in the vessel file, {max(rates):g} Hz in the recording; correct it, as "
+        "`plan` and `sail` count on it, or read the recording at another rate, --sample-rate, if the file is right."
+    ]
 
 
 def _jumps(opened: Recording) -> list[str]:

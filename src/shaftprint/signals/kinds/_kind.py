@@ -136,6 +136,7 @@ class ChannelKind(ABC, Generic[SensorT]):
             way_out=way_out,
             takes_messages=self.takes_messages,
             sensors=vessel.sensors,
+            ship=vessel.name,
         )
         return (Source(kind=self, name=self.name, channel=channel, sensor=sensor, vessel=vessel),)
 

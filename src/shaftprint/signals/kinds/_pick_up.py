@@ -73,6 +73,7 @@ class Speed(ChannelKind[SpeedSensor]):
                     use=f"{self.use} {sensor.name}",
                     takes_messages=not sensor.gives_pulses,
                     sensors=vessel.sensors,
+                    ship=vessel.name,
                 ),
                 sensor=sensor,
                 vessel=vessel,
