@@ -1,5 +1,6 @@
 """``shaftprint export fmu`` writes a fingerprint's model as an FMU."""
 
+import re
 import subprocess
 import zipfile
 from pathlib import Path
@@ -35,6 +36,33 @@ def test_file_and_folder_give_the_same(run, demo, tmp_path, version):
     assert found.get("fmiVersion") == f"{version}.0"
     assert "sources/model.c" in names
     assert not any(name.startswith("binaries") for name in names)
+
+
+def test_the_page_inside_says_what_it_is(run, demo, tmp_path):
+    folder, _ = demo
+    result = run("export", "fmu", folder, "--source-only", "-o", tmp_path / "tug")
+    assert result.exit_code == 0
+    # a tool knows the file by its ending
+    path = tmp_path / "tug.fmu"
+    assert path.is_file()
+    assert str(path) in result.output
+    with zipfile.ZipFile(path) as archive:
+        page = archive.read("documentation/index.html").decode("utf-8")
+    found, _ = description(path)
+    text = " ".join(ET.fromstring(page.partition("<body>")[2].join(("<body>", "")).partition("</html>")[0]).itertext())  # noqa: S314
+    for variable in found.iter("ScalarVariable"):
+        if variable.get("causality") in ("input", "output"):
+            assert variable.get("name") in text
+    fingerprint = read_fingerprint(folder / "fingerprint.json")
+    for quantity in fingerprint.parameters:
+        assert quantity.meaning in text
+    # gain and deviation of the fingerprint, to the digits of the deviation
+    gain = fingerprint.quantity("K_p")
+    shown = re.search(r"K_p\s+([\d.]+) \+/- ([\d.]+)", text)
+    assert abs(float(shown[1]) - gain.value) < 0.1 * gain.std
+    assert abs(float(shown[2]) / gain.std - 1.0) < 0.1
+    assert f"SHA-256 {fingerprint.recording_sha256}" in text
+    assert "steps of 1 ms by itself" in text
 
 
 def test_values_are_those_of_the_fingerprint(run, demo, tmp_path):

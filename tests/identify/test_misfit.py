@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.identify.judgement._misfit import explained, misfit_words, worst_lines
+from shaftprint.identify.judgement._misfit import _in_record, explained, misfit_words, worst_lines
 
 
 def fitted(response, name="CL4", **settings):
@@ -65,3 +65,26 @@ def test_without_weights_it_is_fit_percent_against_what_noise_allows(good):
     right, wrong = (fitted(good, name, weighting=Unweighted()) for name in ("CL4", "CL1"))
     assert explained(right)
     assert not explained(wrong)
+
+
+class Left:
+    """What is left of 20 s of two outputs at 100 Hz: white but for what is added to the second."""
+
+    name, output_names = "record bench", ("omega", "i")
+    used_s = 5.0 + 0.01 * np.arange(2000)
+
+    def __init__(self, added):
+        self.whitened = np.random.default_rng(3).standard_normal((2000, 2))
+        self.whitened[:, 1] += added(self.used_s)
+
+
+@pytest.mark.parametrize(
+    ("added", "words"),
+    [
+        (lambda t: 5.0 * ((t > 12.0) & (t < 13.0)), ", in i, from 12 to 13 s"),
+        (lambda t: 2.0 * np.sin(2.0 * np.pi * 7.0 * t), ", in i, between 5 and 7.5 Hz"),
+        (lambda t: 0.0 * t, ""),
+    ],
+)
+def test_the_place_of_a_misfit_in_a_record_is_told(added, words):
+    assert _in_record(Left(added)) == words

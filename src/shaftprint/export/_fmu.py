@@ -25,6 +25,7 @@ from shaftprint.export._fmu_description import (
     description_of_fmi_2,
     description_of_fmi_3,
 )
+from shaftprint.export._fmu_documentation import documentation
 from shaftprint.export._fmu_equations import FmuEquations
 from shaftprint.export._fmu_program import FmuProgram, fmu_program, largest_pole
 from shaftprint.export._fmu_variables import Variable, variables
@@ -37,6 +38,8 @@ HEADERS: Final = ("core.h", "exchange.h")
 LONGEST_STEP_S: Final = 1e-3
 SHORTEST_STEP_S: Final = 1e-6
 MOST_MOVED: Final = 0.3
+STABLE: Final = 2.7
+"""Step times fastest pole up to which the rule of Runge and Kutta is stable."""
 # The same for all files in an archive, so that equal models give equal files.
 DATE: Final = (1980, 1, 1, 0, 0, 0)
 
@@ -57,6 +60,8 @@ class WrittenFmu:
     """Internal step of co-simulation [s]."""
     largest_pole_rad_s: float
     """Fastest pole over estimate and samples [rad/s]; the step times this stays below 0.3, stable is up to 2.7."""
+    largest_step_s: float
+    """Longest step that stays stable [s]; 0 where any does."""
     model_exchange: bool
     """Whether a solver from outside can be used too."""
     late_outputs: tuple[str, ...]
@@ -120,8 +125,10 @@ def write_fmu(
         draws=draws,
     )
     description, texts = _described(model, equations, identifier(fmu_path.stem), version)
+    largest_step_s = STABLE / pole if pole else 0.0
     with written_whole(fmu_path, overwrite=overwrite) as part, tempfile.TemporaryDirectory() as folder:
-        built, failed = _pack(part, Path(folder), description, texts, version, wanted, progress)
+        page = documentation(model, description, internal_step_s=equations.settings[2], largest_step_s=largest_step_s)
+        built, failed = _pack(part, Path(folder), description, texts, page, version, wanted, progress)
     return WrittenFmu(
         path=fmu_path,
         version=version,
@@ -129,6 +136,7 @@ def write_fmu(
         failed=failed,
         internal_step_s=equations.settings[2],
         largest_pole_rad_s=pole,
+        largest_step_s=largest_step_s,
         model_exchange=description.model_exchange,
         late_outputs=_late_outputs(ready, model),
     )
@@ -201,13 +209,15 @@ def _pack(
     folder: Path,
     d: FmuDescription,
     texts: dict[str, str],
+    page: str,
     version: Literal[2, 3],
     platforms: Sequence[str],
     progress: Callable[[float], None] | None,
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Compile in a folder and write the archive; return the systems of its binaries, and why others have none."""
     members: dict[str, bytes] = {
-        "modelDescription.xml": description_of_fmi_2(d) if version == 2 else description_of_fmi_3(d)
+        "modelDescription.xml": description_of_fmi_2(d) if version == 2 else description_of_fmi_3(d),
+        "documentation/index.html": page.encode(),
     }
     for name, text in sorted(texts.items()):
         members[f"sources/{name}"] = text.encode()

@@ -10,6 +10,7 @@ from shaftprint.arrays import FloatArray, block_of, frozen_float
 from shaftprint.errors import ExportError
 from shaftprint.export._fmu_signals import DEVIATION, FmuSignal, fmu_signal
 from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 from shaftprint.fingerprint._model import identified_model, model_with_limits, named_structure
 from shaftprint.models._structure import Structure
 from shaftprint.notebook._shown import Shown
@@ -40,6 +41,8 @@ class ExportedModel(Shown):
     """95 % intervals of parameters whose standard deviation does not tell what the interval tells."""
     remark: str = ""
     """What whoever uses it must know, such as that it fails its own validation; empty where there is nothing."""
+    source: str = ""
+    """Which fingerprint it is of, in words; empty where it is of none."""
     units: Mapping[str, str] = field(default_factory=dict)
     """Unit of each input and output of a drive, which are whole values; empty for a ship's line."""
 
@@ -138,6 +141,16 @@ def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None, lin
         covariance=frozen_float(block_of(model.covariance, [p.name for p in model.structure.free], uncertain)),
         not_known=model.not_known,
         remark=validation_remark(fingerprint, model.structure.name),
+        source=source_words(fingerprint),
+    )
+
+
+def source_words(fingerprint: LineFingerprint) -> str:
+    """Return which fingerprint a model is of: of what it is, when it was made, and of which recording."""
+    sha256 = fingerprint.recording_sha256
+    return (
+        f"Fingerprint of {fingerprint.title}, identified on {fingerprint.created:%Y-%m-%d} by shaftprint "
+        f"{fingerprint.shaftprint_version}{f', of the recording with SHA-256 {sha256}' if sha256 else ''}."
     )
 
 

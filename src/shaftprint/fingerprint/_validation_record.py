@@ -45,7 +45,7 @@ class ValidationRecord(Record):
             return f"{self.model} fails its own validation in {counts['fails']} of {total} stretches: {self.headline}."
         if self.outcome == "undecided":
             return (
-                f"{self.model} fails its own validation nowhere, but in {counts['undecided']} of {total} stretches "
-                "noise hides whether it holds."
+                f"Whether {self.model} holds is not proved: in {counts['undecided']} of the {total} steps and chirps "
+                "on which it was validated noise is too large to tell; it fails on none."
             )
         return ""

@@ -29,6 +29,8 @@ NEAR_STEP = 1e-2
 # A step that gains less than this share of what was left is the last: where friction holds and lets go what is left is
 # rough, and has no end.
 WORTH = 1e-3
+# A state as large as it is moves the whitened record by no more than this, in standard deviations: it is not seen.
+UNSEEN = 1e-3
 # Times that a step is halved before none is found to help.
 HALVINGS = 8
 
@@ -80,7 +82,7 @@ def best_states(
     left = left_by(run)
     for _ in range(STATE_STEPS):
         moves = whitened(run[run.shape[0] - states.size :]).T
-        change: FloatArray = np.linalg.lstsq(moves, left, rcond=1e-9)[0].astype(np.float64)
+        change = _fitted(moves, left[:, None], first)[:, 0]
         if np.linalg.norm(moves @ change) <= (NEAR_STEP if near else SMALL_STEP) * np.linalg.norm(left):
             # what it leaves is projected out with the effects
             states = states + change
@@ -93,6 +95,18 @@ def best_states(
         if before - left @ left < WORTH * before:
             break
     return states, run
+
+
+def _fitted(moves: FloatArray, left: FloatArray, states: FloatArray) -> FloatArray:
+    """Return the changes of states that explain what is left, shape (states, columns).
+
+    A state that shows nothing in the record however large it is, as the bristles of a friction that slides at the
+    start, stays where it is: a search that moved it would follow rounding to anywhere, and never come to an end.
+    """
+    shows = (states == 0.0) | (np.linalg.norm(moves, axis=0) * np.abs(states) > UNSEEN)
+    change = np.zeros((states.size, left.shape[1]))
+    change[shows] = np.linalg.lstsq(moves[:, shows], left, rcond=1e-9)[0]
+    return change
 
 
 def _nearer(
@@ -134,8 +148,7 @@ class KnownStates:
     @classmethod
     def of(cls, start: InitialStates, cost: float, effects: FloatArray, slopes: FloatArray) -> Self:
         """Return those of a start from whitened effects and derivatives, shape (states or free, length)."""
-        follow = -np.linalg.lstsq(effects.T, slopes.T, rcond=1e-9)[0]
-        return cls(cost=cost, own=start.own, values=start.values, slopes=np.asarray(follow, dtype=np.float64))
+        return cls(cost=cost, own=start.own, values=start.values, slopes=-_fitted(effects.T, slopes.T, start.values))
 
     def at(self, own: FloatArray, free: Sequence[int]) -> FloatArray:
         """Return the states at other parameters to first order, shape (states,)."""

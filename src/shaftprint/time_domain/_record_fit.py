@@ -46,6 +46,16 @@ class RecordFit(FittedTerm):
         return f"record {self.record.name}"
 
     @property
+    def used_s(self) -> FloatArray:
+        """Times of the used samples [s], shape (used samples,)."""
+        return np.asarray(self.record.time_s[self.record.used])
+
+    @property
+    def output_names(self) -> tuple[str, ...]:
+        """Names of the outputs."""
+        return tuple(self.structure.outputs)
+
+    @property
     def seconds(self) -> float:
         """Length of the used samples [s]."""
         return int(self.record.used.sum()) / self.record.rate_hz

@@ -1,5 +1,7 @@
 """Does the structure explain the data, and if not, where not."""
 
+from typing import Protocol, runtime_checkable
+
 import numpy as np
 
 from shaftprint.arrays import FloatArray
@@ -12,6 +14,8 @@ from shaftprint.identify.likelihood._load_factors import load_factors
 REJECTED = 0.01
 # Without weights: how many times what the noise leaves may be left.
 UNWEIGHTED_EXCESS = 2.0
+# Of a record: parts and bands that are looked at, and how much more than others one that is named has.
+PARTS, ABOVE = 20, 1.5
 # A channel is named when its squared deviations are this many times those of every other.
 STANDS_OUT = 3.0
 
@@ -49,7 +53,9 @@ def misfit_words(identification: Identification) -> str:
     if not worst:
         return "the misfit is spread over all lines"
     if not isinstance(identification.parts[0], FittedResponse):
-        return f"the misfit is largest in {', '.join(worst)}"
+        named = {part.name: part for part in identification.parts if isinstance(part, LeavesResiduals)}
+        told = [f"{name}{_in_record(named[name]) if name in named else ''}" for name in worst]
+        return f"the misfit is largest in {'; '.join(told)}"
     response = identification.response
     places = [response.lines.index(name) for name in worst]
     omega = response.omega_rad_s[places]
@@ -60,6 +66,55 @@ def misfit_words(identification: Identification) -> str:
     chance = next(line.p_value for line in identification.line_tests if line.name == worst[0])
     alone = f", {probability(chance)} by itself" if len(worst) == 1 else ""
     return f"the misfit is largest {where}at {spans(worst, response.lines)} ({band}){alone}"
+
+
+@runtime_checkable
+class LeavesResiduals(Protocol):
+    """Data in time: what a fit leaves of them, made white."""
+
+    @property
+    def name(self) -> str:
+        """What messages call the data."""
+
+    @property
+    def whitened(self) -> FloatArray:
+        """Residuals of the used samples, shape (used samples, outputs)."""
+
+    @property
+    def used_s(self) -> FloatArray:
+        """When these are [s], shape (used samples,)."""
+
+    @property
+    def output_names(self) -> tuple[str, ...]:
+        """Names of the outputs."""
+
+
+def _in_record(part: LeavesResiduals) -> str:
+    """Return where in a record the misfit is: in which output, and when or at which frequencies; empty where nowhere.
+
+    What is left is white with a power of 1 where the structure holds.
+    """
+    squares = part.whitened**2
+    order = np.argsort(squares.sum(axis=0))
+    output = int(order[-1])
+    stands_out = len(order) > 1 and squares[:, output].sum() > ABOVE * squares[:, order[-2]].sum()
+    words = f", in {part.output_names[output]}" if stands_out else ""
+    parts = np.array_split(squares[:, output], PARTS)
+    power = np.array([one.mean() if one.size else 0.0 for one in parts])
+    worst = int(np.argmax(power))
+    if power[worst] > STANDS_OUT * np.median(power):
+        first = sum(one.size for one in parts[:worst])
+        times = part.used_s[[first, first + parts[worst].size - 1]]
+        return f"{words}, from {times[0]:.3g} to {times[1]:.3g} s"
+    spectrum = np.abs(np.fft.rfft(part.whitened[:, output])[1:]) ** 2
+    bands = np.array_split(spectrum, PARTS)
+    power = np.array([one.mean() if one.size else 0.0 for one in bands])
+    worst = int(np.argmax(power))
+    if power[worst] <= ABOVE * np.median(power):
+        return words
+    rate_hz = 1.0 / float(np.median(np.diff(part.used_s)))
+    width_hz = 0.5 * rate_hz / PARTS
+    return f"{words}, between {width_hz * worst:.3g} and {width_hz * (worst + 1):.3g} Hz"
 
 
 def _standing_out(identification: Identification, places: list[int]) -> str:

@@ -26,7 +26,7 @@ with late():
     from shaftprint.bench._kept import kept_drive
     from shaftprint.catalogue._own_structure import TypedName, chosen_structures
     from shaftprint.drive._drive import load_drive
-    from shaftprint.export._model import ExportedModel, validation_remark
+    from shaftprint.export._model import ExportedModel, source_words, validation_remark
     from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
     from shaftprint.fingerprint._json_file import of_a_drive, of_a_ship
     from shaftprint.forecast._simulated_model import simulated_model
@@ -103,6 +103,7 @@ def model_to_export(
         covariance=model.covariance,
         not_known=model.not_known,
         remark=remark,
+        source=source_words(identified),
     )
 
 
@@ -130,6 +131,7 @@ def _drive_to_export(
         uncertain=tuple(known),
         covariance=frozen_float(kept.covariance_of(known)),
         not_known=model.not_known,
+        source=source_words(kept),
         units=dict(one.units),
     )
 
@@ -143,6 +145,9 @@ def file_to_write(
     replaced.
     """
     path = output or Path(plain_name(f"{model.title}-{model.structure.name}{suffix}"))
+    if not path.suffix:
+        # programs know such a file by its ending
+        path = path.with_name(f"{path.name}{suffix}")
     expect_no_input(path, *(None if source is None else fingerprint_file(source) for source in inputs))
     expect_free(path, force=force)
     return path
