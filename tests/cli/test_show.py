@@ -48,3 +48,8 @@ def test_files_that_are_none(run, tmp_path, recording):
     result = run("show", foreign)
     assert result.exit_code == 1
     assert f"{foreign}: expected a fingerprint" in result.stderr
+
+
+def test_what_is_common_to_tables_is_said_once(run, demo):
+    words = " ".join(run("show", demo[0]).output.split())
+    assert words.count("+/- is one standard deviation. It is not shown where") == 1

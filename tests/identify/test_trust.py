@@ -8,7 +8,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Prior, Requirements, Settings, identify, profile
-from shaftprint.identify.judgement._number_precision import doubts_of
+from shaftprint.identify.judgement._number_precision import _beyond, doubts_of
 from shaftprint.models import Combination, Gain, Parameter, PIGovernor, Structure
 from shaftprint.spectra import FrequencyResponse
 
@@ -117,3 +117,9 @@ def test_requirements_are_positive():
     with pytest.raises(IdentificationError, match="requirement gain_margin: expected a positive number, found 0"):
         Requirements(gain_margin=0.0)
     assert Requirements(lowest_line_snr_db=-3.0).lowest_line_snr_db == -3.0
+
+
+@pytest.mark.parametrize(("percent", "words"), [(10.26, "10.26"), (13.4, "13"), (10.6, "11"), (99.7, "100")])
+def test_a_share_beyond_the_limit_shows_that_it_is(percent, words):
+    """Ten per cent are allowed: what is said to be "10 % only" looks allowed."""
+    assert _beyond(percent, 10.0) == words

@@ -147,7 +147,7 @@ def test_one_remark_is_said_more_are_counted_and_all_stand_among_the_findings(fi
         assert summary_section(SimpleNamespace(fingerprint=remarked)).points[-count:] == remarks[:count]
     one, two = said[1], said[2]
     assert one.sentence.endswith("places were repaired. One remark: channel M_s reaches 1.02 of its range.")
-    assert one.action.endswith("Mend what it names: a sensor, its wiring, or the test.")
+    assert one.action.endswith("Mend the cause: a sensor, its wiring, or the test.")
     assert two.sentence.endswith("156 places were repaired. There are 2 remarks on the signals.")
     assert "Findings" in two.action
 

@@ -17,12 +17,12 @@ LINES = [("GAUGE-CLOSED", {}), ("GAUGE-COMBINATOR", PITCH)]
 def test_a_late_gauge_is_named_with_its_size(name, given):
     (reason,) = shift_reasons(exact_response(structure(name), given | {"t_gauge": 0.05}, 0.001))
     assert reason.kind == "gauge latency"
-    assert "about +50 ms later" in reason.sentence
+    assert "about 50 ms later" in reason.sentence
 
 
 def test_a_late_pick_up_is_a_gauge_that_comes_too_early():
     (reason,) = shift_reasons(exact_response(structure("GAUGE-CLOSED"), {"t_pickup": 0.05}, 0.001))
-    assert "about -50 ms later" in reason.sentence
+    assert "about 50 ms earlier" in reason.sentence
 
 
 @pytest.mark.parametrize(("name", "given"), LINES)

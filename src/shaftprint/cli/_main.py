@@ -18,7 +18,8 @@ def shaftprint() -> None:
     """Find the fingerprint of a ship's propulsion line in a logger recording.
 
     The fingerprint is the line's physical parameters with their uncertainty, its frequency response and
-    its stability margins. Begin with `shaftprint demo`.
+    its stability margins. Begin with `shaftprint start`, or with
+    `shaftprint demo` on a simulated ship.
     """
 
 

@@ -82,9 +82,10 @@ def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
             kind="gauge latency",
             where="M_s",
             sentence=(
-                f"Speed and torque are shifted against each other: the torque comes about {MILLI * delay_s:+.0f} ms "
-                "later than load and inertia let expect; check latency_s of the torque gauge in the vessel file, "
-                "whether the speed pick-up is late, and whether samples of one channel were lost."
+                "Speed and torque are shifted against each other: the torque comes about "
+                f"{MILLI * abs(delay_s):.0f} ms {'later' if delay_s > 0.0 else 'earlier'} than load and inertia let "
+                "expect; check latency_s of the torque gauge in the vessel file, whether the "
+                "speed pick-up is late, and whether samples of one channel were lost."
             ),
         ),
     )

@@ -1,7 +1,6 @@
 """Tables on the terminal."""
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 from shaftprint.cli._terminal import output, print_lines_of_table, say, width
 from shaftprint.cli.output._json import table_json
@@ -13,9 +12,8 @@ from shaftprint.plain_table import Table
 def print_tables(tables: Sequence[Table]) -> None:
     """Print those tables that have rows; a note that several have in common comes once, after the last of them."""
     shown = [table for table in tables if table.rows]
-    for table, following in pairwise([*shown, None]):
-        if table is not None:
-            print_table(table, noted=following is None or following.note != table.note)
+    for number, table in enumerate(shown, start=1):
+        print_table(table, noted=all(following.note != table.note for following in shown[number:]))
 
 
 def print_table(table: Table, *, noted: bool = True) -> None:

@@ -81,8 +81,14 @@ def _doubt(
         return f"the test adds almost nothing to what was known before{by_little}"
     size = _size(identification, estimate)
     if std > requirements.largest_std * size:
-        return f"{_KNOWN_TO}{100.0 * std / size:.0f} %{_ONLY}" if size > 0.0 else "it cannot be distinguished from 0"
+        share = _beyond(100.0 * std / size, 100.0 * requirements.largest_std) if size > 0.0 else ""
+        return f"{_KNOWN_TO}{share} %{_ONLY}" if share else "it cannot be distinguished from 0"
     return ""
+
+
+def _beyond(percent: float, limit: float) -> str:
+    """Return a share that is beyond a limit, with as many digits as show that it is."""
+    return f"{percent:.0f}" if round(percent) > limit else f"{percent:.4g}"
 
 
 def _sides(lower: bool, upper: bool) -> str:

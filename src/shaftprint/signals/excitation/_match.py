@@ -152,9 +152,11 @@ def expect_campaign(
             "point, that the test was made, and that campaign and vessel file are of this ship."
         )
     held = [item for item in campaign.excitations if not coverage.missing(item.start_s, item.stop_s)]
-    slow = [item for item in held if not _is_fast(item)] or held
-    # steps at a minute's end are alike in many a campaign: lines are not
-    slow = [item for item in slow if not isinstance(item, Staircase)] or slow
+    slow: list[Excitation] = [item for item in held if not _is_fast(item)] or held
+    # steps at a minute's end are alike in many a campaign: lines are not, where the set point moves in their place
+    lines: list[Excitation] = [item for item in slow if not isinstance(item, Staircase)]
+    if lines and all(_moves_in(set_point_v, item, campaign, rate_hz, start_s) for item in lines):
+        slow = lines
     foreign = [
         item.name for item in slow if _explained(set_point_v, item, campaign, rate_hz, start_s) < _LEAST_EXPLAINED
     ]
@@ -190,6 +192,13 @@ def expect_campaign(
         for test in held_tests
         for difference in test.differences
     )
+
+
+def _moves_in(set_point_v: FloatArray, item: Excitation, campaign: Campaign, rate_hz: float, start_s: float) -> bool:
+    """Return whether a set point moves in the place of a test by as much as the campaign asks for, or by half of it."""
+    places = _looked_at(item, set_point_v.size, rate_hz, start_s)
+    planned = setpoint(campaign, start_s + places / rate_hz)
+    return places.size > 0 and float(np.ptp(set_point_v[places])) >= _LEAST_MOVEMENT * float(np.ptp(planned))
 
 
 def is_followed(set_point_v: FloatArray, campaign: Campaign, *, rate_hz: float, start_s: float) -> bool:

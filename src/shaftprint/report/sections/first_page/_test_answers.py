@@ -137,7 +137,7 @@ def measured(fingerprint: "Fingerprint") -> Card:
             "Read under Data quality why so many test frequencies were left out before the test is repeated."
         )
     if remarks:
-        actions.append(f"{'Mend what it names' if remarks == 1 else READ_REMARKS}: a sensor, its wiring, or the test.")
+        actions.append(f"{'Mend the cause' if remarks == 1 else READ_REMARKS}: a sensor, its wiring, or the test.")
     return Card(
         question="Were the measurements good?",
         state="look" if many or remarks else "fine",
