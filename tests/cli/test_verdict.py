@@ -1,5 +1,6 @@
 """The verdict comes first on the terminal, and structures beside each other are compared."""
 
+import json
 import re
 
 import pytest
@@ -10,13 +11,17 @@ def test_the_verdict_comes_first(run, demo):
     folder, result = demo
     shown = run("show", folder).output
     lines = shown.splitlines()
-    assert lines[0] == "Verdict: trustworthy"
+    assert lines[0] == "Verdict: trustworthy, but not governor gains"
     assert lines[1].startswith(
         "  * The fit can be trusted: GAUGE-CLOSED explains 10 good spectral lines within their noise (p = "
     )
-    assert lines[2].startswith("  * Trusted: ")
-    assert "k_q" in lines[2]
-    assert re.match(r"  \* Not trusted: K_p \(\d+ %\), K_i \(\d+ %\)", lines[3]), lines[3]
+    kept = json.loads((folder / "fingerprint.json").read_text(encoding="utf-8"))["verdict"]["not_trusted"]
+    first, second = (re.search(r"(\d+) %", kept[name])[1] for name in ("K_p", "K_i"))
+    assert lines[2].startswith("  * Inertia, propeller, total delay, gain margin")
+    assert f"can be used; governor gains (known to {first} and {second} %)" in lines[2]
+    assert lines[3].startswith("  * Trusted: ")
+    assert "k_q" in lines[3]
+    assert re.match(r"  \* Not trusted: K_p \(\d+ %\), K_i \(\d+ %\)", lines[4]), lines[4]
     told = " ".join(shown.split())
     assert told.count("known to this share of the value only") == 1
     assert "The stability margins are small: a gain margin of 1." in shown
@@ -29,6 +34,8 @@ def test_the_verdict_comes_first(run, demo):
         words for words in " ".join(result.output.split()).split(" * ") if words.startswith("Engine, coupling")
     )
     assert "with the prior of the vessel file" in found
+    # by hand: the rows of the vessel file at the engine sum up to 3.6466 kg m2, as its own comment says
+    assert "(3.65 kg m2 at the engine shaft, times 3.82^2 at the propeller shaft, and 0.794 kg m2 there)" in found
     assert "; the test adds almost nothing to what was known before" in found
 
 

@@ -119,7 +119,8 @@ def expect_identification(folder, printed, words):
 
 def expect_saved_fingerprint(folder, printed, words):
     assert printed.startswith(
-        "Verdict: trustworthy\n  * The fit can be trusted: GAUGE-CLOSED explains 10 good spectral lines"
+        "Verdict: trustworthy, but not governor gains\n  * The fit can be trusted: "
+        "GAUGE-CLOSED explains 10 good spectral lines"
     )
     found = read_fingerprint(folder / words[1] / "fingerprint.json")
     assert set(rows(printed, "Identified parameters")) == {quantity.name for quantity in found.parameters}

@@ -57,7 +57,8 @@ def test_what_does_not_hang_on_the_scale_of_the_gauge_stays_usable(gauge):
     numbers = len(verdict.trusted) + len(verdict.not_trusted)
     assert verdict.words == f"trustworthy in part, {len(verdict.trusted)} of {numbers} numbers"
     assert sum("The scale is in doubt." in sentence for sentence in verdict.sentences) == 1
-    assert before.words == "trustworthy"
+    assert {"K_p", "K_i"} <= set(before.not_trusted)
+    assert before.words == "trustworthy, but not governor gains"
 
 
 def test_reasons_of_the_response_come_with_it(gauge):

@@ -160,7 +160,9 @@ def test_every_point_that_is_not_fine_says_what_to_do(fingerprint):
             doubted = with_verdict(fingerprint, trustworthy=trustworthy, reasons=(reason,), loop="small")
             doubted = with_physical(doubted, "K_Q", value=0.03, std=0.001, expected=0.0494, expected_std=None)
             cover = cover_of(doubted, previous=fingerprint)
-            assert not [card.question for card in cover.cards if (card.state == "fine") == bool(card.action)]
+            judged = [card for card in cover.cards if card.word != "Not judged"]
+            assert not [card.question for card in judged if (card.state == "fine") == bool(card.action)]
+            assert len(judged) == len(cover.cards) if trustworthy else len(judged) == 3
             words = " ".join(f"{card.question} {card.sentence} {card.action}" for card in cover.cards)
             assert not re.search(r"GAUGE-|\bS\d|M_s|I_dn|K_Q|\blines\b", words), words
 
@@ -180,7 +182,8 @@ def test_numbers_have_two_digits_of_their_interval(fingerprint):
     delay = Estimate(name="t_d + t_sp", unit="s", value=0.1216, std=0.002, interval_95=(0.1197, 0.1254))
     margin = Estimate(name="gain margin", unit="-", value=1.5382, std=0.03, interval_95=(1.5241, 1.6462))
     inertia = Estimate(name="I_up", unit="kg m2", value=738.2, std=161.0, interval_95=(415.3, 1061.2))
-    made = fingerprint.model_copy(update={"combinations": (delay,), "margins": (margin,), "physical": (inertia,)})
+    numbers = {"parameters": (), "combinations": (delay,), "margins": (margin,), "physical": (inertia,)}
+    made = fingerprint.model_copy(update=numbers)
     (table,) = cover_of(made).tables
     assert [row[1:3] for row in table.rows] == [
         ("740 kg m²", "420 to 1\u202f060"),
@@ -294,3 +297,68 @@ def test_power_stands_beside_the_torque(fingerprint):
     point = dict(cover_of(told, vessel=load_vessel("stan-tug-1205")).facts)["Working point"]
     assert point == "1\u202f146 rpm engine speed, 1\u202f910 N·m shaft torque, 60.00 ± 0.63 kW"
     assert "kW" not in dict(cover_of(told).facts)["Working point"]
+
+
+SHAFT = Reason(
+    kind="speed scale",
+    sentence="The speed is in doubt: it seems to be 5.2 times the true one, 5824 rpm where 1120 rpm are expected; that "
+    'is the gear ratio of 5.2: write shaft = "engine" for n_e.',
+    where="n_e",
+)
+
+
+def test_a_refused_test_has_the_cause_of_the_verdict_and_no_other_answer(fingerprint, vessel):
+    """A pick-up of the engine that is said to be on the propeller shaft: its pulses are right, and so is the gauge."""
+    found = with_verdict(fingerprint, trustworthy=False, reason=SHAFT.sentence, reasons=(SHAFT,), trusted=())
+    found = with_physical(found, "K_Q", value=0.0018, std=0.0001, expected=0.0494, expected_std=None)
+    cover = cover_of(found, vessel=vessel)
+    told = {card.question: card for card in cover.cards}
+    assert told[USABLE].action == 'That is the gear ratio of 5.2: write shaft = "engine" for n_e.'
+    assert "pulses" not in f"{told[USABLE].sentence} {told[USABLE].action}"
+    for question in (HUNTING, INERTIA, PROPELLER, GAUGE, PREDICTS):
+        assert told[question].word == "Not judged"
+        assert not told[question].action
+    assert not cover.tables
+    words = " ".join(f"{card.sentence} {card.action}" for card in cover.cards)
+    assert "longer test" not in words
+    assert "torque and power" not in words
+    (point,) = [value for name, value in cover.facts if name == "Working point"]
+    assert "kW" not in point
+    assert point.endswith("as recorded; in doubt")
+
+
+def test_the_headline_says_that_gains_and_margins_cannot_be_used(fingerprint):
+    """Twelve minutes in a seaway: the speed and one inertia are known, governor and margins are not."""
+    poorly = {"K_p": 14, "K_i": 12, "gain margin": 11, "phase margin": 20, "delay margin": 31}
+    trusted = ("k_q", "I_dn", "K_Q", "n_0")
+    found = with_verdict(
+        fingerprint,
+        trustworthy=True,
+        reasons=(),
+        trusted=trusted,
+        not_trusted={name: f"it is known to {share} % only" for name, share in poorly.items()},
+        reason="The fit can be trusted: GAUGE-CLOSED explains 27 good spectral lines of 114 within their noise.",
+    )
+    assert found.verdict.words == "trustworthy, but not governor gains and margins"
+    cover = cover_of(found)
+    assert cover.headline.startswith("The test can be used in part")
+    assert cover.known == (
+        "4 of 9 numbers are known. Inertia and propeller can be used; governor gains "
+        "(known to 14 and 12 %) and margins (known to 11, 20 and 31 %) cannot."
+    )
+    told = answers(found)
+    assert told[USABLE].state == "look"
+    assert "27 of 114 in the fit stand clear of the noise." in told["Were the measurements good?"].sentence
+    assert told["Were the measurements good?"].state == "look"
+    (table,) = cover.tables
+    marked = [row[0] for row in table.rows if "not to be used" in row[0]]
+    assert [re.search(r"known to (\d+) %", words)[1] for words in marked] == ["14", "12", "11", "20", "31"]
+
+
+def test_a_longer_test_is_no_advice_where_a_scale_is_wrong(fingerprint):
+    doubt = "it depends on the scale of the torque gauge"
+    reason = Reason(kind="gauge scale", sentence="The gauge shows half.")
+    found = with_verdict(fingerprint, trustworthy=True, reasons=(reason,), not_trusted={"K_Q": doubt, "I_dn": doubt})
+    for question in (PROPELLER, INERTIA):
+        assert answers(found)[question].action.startswith("Do what the first answer says")
+        assert "%" not in answers(found)[question].sentence

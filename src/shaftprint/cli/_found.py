@@ -11,6 +11,7 @@ with late():
     from shaftprint.catalogue._roles import ShipRole
     from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
     from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._vessel_fields import inertia_in_words
     from shaftprint.identify.fit._estimate import Estimate
     from shaftprint.identify.fit._identification import Identification
 
@@ -31,7 +32,7 @@ def found_sentences(fingerprint: Fingerprint, truth: Mapping[str, float]) -> tup
     unusable: list[str] = []
     for name in [name for name in SENTENCES if name in there]:
         quantity = there[name]
-        given = _given(quantity, fingerprint) or ("" if name in truth else _beside(quantity))
+        given = _given(quantity, fingerprint) or ("" if name in truth else _beside(quantity, fingerprint))
         true = _true(quantity, truth[name]) if name in truth else ""
         doubt = f"; {doubts[name]}" if name in doubts else ""
         words = SENTENCES[name] or quantity.meaning.capitalize()
@@ -59,13 +60,14 @@ def _true(quantity: Estimate, true: float) -> str:
     return f"; true value {value}{after_number(quantity.unit)}"
 
 
-def _beside(quantity: Estimate) -> str:
+def _beside(quantity: Estimate, fingerprint: Fingerprint) -> str:
     """Return what the vessel file says of it, where it is a physical value that the file has."""
     if not quantity.expected:
         return ""
+    expected = plain_letters(to_digit_of(quantity.expected, quantity.interval_std))
     if quantity.expected_std:
-        return f", in the vessel file {stated(quantity.expected, quantity.expected_std, quantity.unit)}"
-    return f", in the vessel file {plain_letters(to_digit_of(quantity.expected, quantity.interval_std))}"
+        expected = stated(quantity.expected, quantity.expected_std, quantity.unit)
+    return f", in the vessel file {expected}{_at_engine(quantity, fingerprint)}"
 
 
 def _given(quantity: Estimate, fingerprint: Fingerprint) -> str:
@@ -74,7 +76,14 @@ def _given(quantity: Estimate, fingerprint: Fingerprint) -> str:
     if parameter is None or parameter.name not in fingerprint.priors or quantity.expected is None:
         return ""
     prior = stated(quantity.expected, quantity.expected_std or 0.0, quantity.unit)
-    return f", with the prior of the vessel file {prior}"
+    return f", with the prior of the vessel file {prior}{_at_engine(quantity, fingerprint)}"
+
+
+def _at_engine(quantity: Estimate, fingerprint: Fingerprint) -> str:
+    """Return what the vessel file states of an inertia at the engine's shaft, in brackets; nothing of others."""
+    side = {"I_up": "upstream", "I_dn": "downstream"}.get(quantity.name)
+    words = "" if side is None else inertia_in_words(fingerprint.vessel_fields, side)
+    return f" ({words})" if words else ""
 
 
 # None: its own meaning, which goes with the structure.

@@ -70,3 +70,24 @@ def _upstream(fields: Mapping[str, FieldValue]) -> tuple[object, ...]:
 
 def _is_upstream(path: str, value: FieldValue) -> bool:
     return path.startswith(INERTIA) and path.endswith(".gauge") and value == "upstream"
+
+
+def inertia_in_words(fields: Mapping[str, FieldValue], side: str) -> str:
+    """Return what a vessel file states of the inertia on one side of the gauge, where a part is at the engine's shaft.
+
+    Nothing where all is at the propeller shaft, at which inertias are told. ``side``: ``upstream`` or ``downstream``.
+    """
+    rows = [
+        path.removesuffix(".gauge")
+        for path, value in fields.items()
+        if path.startswith(INERTIA) and path.endswith(".gauge") and value == side
+    ]
+    at: dict[str, float] = {}
+    for row in rows:
+        shaft = str(fields.get(f"{row}.shaft", ""))
+        at[shaft] = at.get(shaft, 0.0) + float(fields.get(f"{row}.inertia_kg_m2", 0.0))
+    ratio = float(fields.get("gearbox.ratio", 1.0))
+    if ratio == 1.0 or not at.get("engine"):
+        return ""
+    words = f"{at['engine']:.3g} kg m2 at the engine shaft, times {ratio:g}^2 at the propeller shaft"
+    return words + (f", and {at['propeller']:.3g} kg m2 there" if at.get("propeller") else "")

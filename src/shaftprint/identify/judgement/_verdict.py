@@ -37,6 +37,7 @@ from shaftprint.identify.judgement._fit_reasons import (
 )
 from shaftprint.identify.judgement._hold_out_lines import not_predicted
 from shaftprint.identify.judgement._input_jump import jump_reasons
+from shaftprint.identify.judgement._main_numbers import groups_lost, main_in_words
 from shaftprint.identify.judgement._number_precision import KNOWN_POORLY, doubts_of, share_of
 from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._prior_contradictions import beyond_priors, contradicted_priors
@@ -114,7 +115,8 @@ class Verdict(Shown):
         if not self.trustworthy:
             return "not trustworthy"
         if not self.reasons:
-            return "trustworthy"
+            lost = groups_lost(self.trusted, self.not_trusted)
+            return f"trustworthy, but not {listed(lost)}" if lost else "trustworthy"
         return f"trustworthy in part, {len(self.trusted)} of {len(self.trusted) + len(self.not_trusted)} numbers"
 
     def summary(self) -> Summary:
@@ -197,6 +199,7 @@ def assess(
     headline = _headline(evidence, every, trusted=trusted, not_trusted=not_trusted, usable=usable)
     sentences = (
         headline,
+        *([told] if usable and (told := main_in_words(trusted, not_trusted)) else []),
         # the headline has said the first
         *(reason.sentence for reason in every if reason.sentence not in headline),
         *(() if of_fit else trusted_in_words(trusted, not_trusted)),

@@ -4,14 +4,22 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.digits import plain, unit_text, with_deviation
+from shaftprint.digits import plain, to_digit_of, unit_text, with_deviation
+from shaftprint.identify.judgement._main_numbers import main_in_words
 from shaftprint.report._logo import drawn_logo
 from shaftprint.report.sections._cover import Cover, overall
 from shaftprint.report.sections.first_page._change_answer import change_answer
 from shaftprint.report.sections.first_page._line_answers import hunting, inertia, other_contradictions, propeller
 from shaftprint.report.sections.first_page._line_sketch import line_sketch
 from shaftprint.report.sections.first_page._number_table import number_table
-from shaftprint.report.sections.first_page._test_answers import gauge, measured, predicts, usable
+from shaftprint.report.sections.first_page._test_answers import (
+    gauge,
+    is_partial,
+    measured,
+    not_judged,
+    predicts,
+    usable,
+)
 from shaftprint.tables._conditions import ship_text, tested_text, water_facts
 
 if TYPE_CHECKING:
@@ -41,19 +49,20 @@ def cover_of(
     only the first counts. ``vessel``: what was tested, for the sketch. ``previous``: fingerprint of an earlier test.
     """
     change = [] if previous is None else [change_answer(previous, fingerprint)]
-    cards = [
-        usable(fingerprint),
-        *change,
+    verdict = fingerprint.verdict
+    of_line = [
         *hunting(fingerprint),
         *inertia(fingerprint),
         *propeller(fingerprint),
         *other_contradictions(fingerprint),
         *gauge(fingerprint),
         predicts(validations),
-        measured(fingerprint),
     ]
-    verdict = fingerprint.verdict
-    state, headline = overall(cards, usable=verdict.trustworthy, partly=bool(verdict.reasons))
+    # where no number can be used there is one cause and one action: what follows from it is not judged
+    judged = of_line if verdict.trustworthy else [not_judged(card) for card in of_line]
+    cards = [usable(fingerprint), *change, *judged, measured(fingerprint)]
+    partly = bool(verdict.reasons) or is_partial(fingerprint)
+    state, headline = overall(cards, usable=verdict.trustworthy, partly=partly)
     company = None if vessel is None else vessel.company
     logo_path = None if company is None else company.logo_path
     logo, missing = (None, "") if logo_path is None else drawn_logo(logo_path)
@@ -65,7 +74,7 @@ def cover_of(
         known=_known(fingerprint),
         change=f"{change[0].question} {change[0].sentence}" if change else "",
         facts=[*_facts(fingerprint, vessel), *([("Logo", missing)] if missing else [])],
-        tables=number_table(fingerprint),
+        tables=number_table(fingerprint) if verdict.trustworthy else [],
         sketch=None if vessel is None else line_sketch(vessel),
         company="" if company is None else company.name,
         logo=logo,
@@ -75,10 +84,13 @@ def cover_of(
 def _working_point(fingerprint: "Fingerprint", vessel: "Vessel | None") -> str:
     conditions = fingerprint.conditions
     speed, torque = conditions.engine_speed, conditions.shaft_torque
-    return (
-        f"{plain(speed.value, 0)} {unit_text(speed.unit)} engine speed, {plain(torque.value, 0)} "
-        f"{unit_text(torque.unit)} shaft torque{_power(fingerprint, vessel)}"
+    found = (
+        f"{plain(speed.value, 0)} {unit_text(speed.unit)} engine speed, "
+        f"{to_digit_of(torque.value, torque.std)} {unit_text(torque.unit)} shaft torque"
     )
+    if not fingerprint.verdict.trustworthy:
+        return f"{found}, as recorded; in doubt"
+    return f"{found}{_power(fingerprint, vessel)}"
 
 
 def _power(fingerprint: "Fingerprint", vessel: "Vessel | None") -> str:
@@ -95,7 +107,9 @@ def _known(fingerprint: "Fingerprint") -> str:
     """Return how many numbers the verdict trusts: the one rule for what is known."""
     verdict = fingerprint.verdict
     known = len(verdict.trusted) if verdict.trustworthy else 0
-    return f"{known} of {len(verdict.trusted) + len(verdict.not_trusted)} numbers are known"
+    count = f"{known} of {len(verdict.trusted) + len(verdict.not_trusted)} numbers are known"
+    main = main_in_words(verdict.trusted, verdict.not_trusted) if verdict.trustworthy else ""
+    return f"{count}. {main}" if main else count
 
 
 def _facts(fingerprint: "Fingerprint", vessel: "Vessel | None") -> list[tuple[str, str]]:

@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING
 
+from shaftprint.identify.judgement._affected_numbers import AFFECTED
+
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.identify.fit._estimate import Estimate
@@ -22,6 +24,18 @@ def doubt_of(fingerprint: "Fingerprint", name: str) -> str:
     # of a sentence that begins with the number itself the reader sees which
     own = f"the {_CALLED.get(name, name)} {reason.removeprefix('it ')}" if reason.startswith("it ") else reason
     return f"It cannot be told: {own}."
+
+
+def is_of_reason(fingerprint: "Fingerprint", name: str) -> bool:
+    """Return whether a number is not trusted for what the verdict has found wrong, which no longer test mends."""
+    return fingerprint.verdict.not_trusted.get(name) in {clause for _, clause in AFFECTED.values()}
+
+
+def mend(fingerprint: "Fingerprint", name: str) -> str:
+    """Return what to do for a number that is not trusted."""
+    if is_of_reason(fingerprint, name):
+        return "Do what the first answer says, then identify once more."
+    return "Ask for a longer test if this number is needed."
 
 
 def is_off(quantity: "Estimate") -> bool:

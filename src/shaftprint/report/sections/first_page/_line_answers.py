@@ -4,9 +4,10 @@ import math
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain, unit_text, with_deviation
-from shaftprint.fingerprint._vessel_fields import INERTIA
+from shaftprint.distributions import NORMAL_95
+from shaftprint.fingerprint._vessel_fields import INERTIA, inertia_in_words
 from shaftprint.report.sections._cover import Card, State
-from shaftprint.report.sections.first_page._doubts import FAR, TOO_FAR, doubt_of, is_off
+from shaftprint.report.sections.first_page._doubts import FAR, TOO_FAR, doubt_of, is_of_reason, is_off, mend
 from shaftprint.report.sections.first_page._number_table import shown
 from shaftprint.signals._load_reasons import LARGEST_BY_DAY
 from shaftprint.tables._fingerprint import expected_text, value_text
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.identify.fit._estimate import Estimate
 
+# A difference of so few standard deviations has no sign worth a word.
+NO_DIFFERENCE = 0.5
 ANSWERED_ELSEWHERE = ("I_dn", "K_Q")
 """Physical values that have a question of their own."""
 SOURCES = {
@@ -23,7 +26,6 @@ SOURCES = {
     "reconstructed": "reconstructed from other numbers of a table",
 }
 """Where an inertia of the vessel file is from, where its own word needs more."""
-NOT_TOLD = "Ask for a longer test if this number is needed."
 
 
 def hunting(fingerprint: "Fingerprint") -> list[Card]:
@@ -51,7 +53,9 @@ def hunting(fingerprint: "Fingerprint") -> list[Card]:
         words += f" The governor gain may grow by a factor of {value} ({interval}) before the speed hunts; "
         words += "2 or more is usual."
     if doubt:
-        return [Card(question=question, state="open", sentence=f"{doubt} {words}", action=NOT_TOLD)]
+        return [
+            Card(question=question, state="open", sentence=f"{doubt} {words}", action=mend(fingerprint, "gain margin"))
+        ]
     action = "" if state == "fine" else "Do not raise the governor gain; have its setting checked at the next service."
     return [Card(question=question, state=state, sentence=words, action=action)]
 
@@ -70,7 +74,8 @@ def inertia(fingerprint: "Fingerprint") -> list[Card]:
     )
     apart, doubt = quantity.deviations_from_expected, doubt_of(fingerprint, "I_dn")
     if doubt or apart is None:
-        return [Card(question=question, state="open", sentence=f"{doubt} {words}".strip(), action=NOT_TOLD)]
+        action = mend(fingerprint, "I_dn")
+        return [Card(question=question, state="open", sentence=f"{doubt} {words}".strip(), action=action)]
     if apart <= FAR:
         return [Card(question=question, state="fine", sentence=words)]
     return [
@@ -105,13 +110,14 @@ def propeller(fingerprint: "Fingerprint") -> list[Card]:
         return []
     (quantity,) = coefficients
     question = "Does the propeller take the torque that it should?"
-    words = (
-        f"Its torque coefficient is {value_text(quantity)}, in the vessel file {expected_text(quantity)}."
-        f"{_power_for_speed(quantity)}"
-    )
+    words = f"Its torque coefficient is {value_text(quantity)}, in the vessel file {expected_text(quantity)}."
     doubt = doubt_of(fingerprint, "K_Q")
+    if not is_of_reason(fingerprint, "K_Q"):
+        words += _power_for_speed(quantity)
     if doubt or not quantity.std < float("inf"):
-        return [Card(question=question, state="open", sentence=f"{doubt} {words}".strip(), action=NOT_TOLD)]
+        return [
+            Card(question=question, state="open", sentence=f"{doubt} {words}".strip(), action=mend(fingerprint, "K_Q"))
+        ]
     if is_off(quantity):
         return [
             Card(
@@ -159,6 +165,9 @@ def _power_for_speed(quantity: "Estimate") -> str:
         return ""
     ratio = quantity.value / expected
     std = abs(ratio) * math.hypot(quantity.std / quantity.value, (quantity.expected_std or 0.0) / expected)
+    if abs(ratio - 1.0) < NO_DIFFERENCE * std:
+        within = plain(PERCENT * NORMAL_95 * std, 0)
+        return f" At one speed of the shaft that is as much torque, power and fuel, to within {within} %."
     apart = with_deviation(PERCENT * abs(ratio - 1.0), PERCENT * std)
     way = "less" if ratio < 1.0 else "more"
     return f" At one speed of the shaft that is {apart} % {way} torque and power, and about as much {way} fuel."
@@ -177,13 +186,15 @@ def other_contradictions(fingerprint: "Fingerprint") -> list[Card]:
         Card(
             question="Does all else agree with the vessel file?",
             state="look",
-            sentence=" ".join(_contradiction(quantity) for quantity in off),
+            sentence=" ".join(_contradiction(quantity, fingerprint) for quantity in off),
             action="Check these entries of the vessel file, and what was changed on board since it was written.",
         )
     ]
 
 
-def _contradiction(quantity: "Estimate") -> str:
+def _contradiction(quantity: "Estimate", fingerprint: "Fingerprint") -> str:
+    told = inertia_in_words(fingerprint.vessel_fields, "upstream") if quantity.name == "I_up" else ""
+    file = f" ({told})" if told else ""
     value, interval = shown(quantity)
     what = quantity.meaning or quantity.name
-    return f"{what[:1].upper()}{what[1:]}: {value} ({interval}), in the vessel file {expected_text(quantity)}."
+    return f"{what[:1].upper()}{what[1:]}: {value} ({interval}), in the vessel file {expected_text(quantity)}{file}."

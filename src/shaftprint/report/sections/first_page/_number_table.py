@@ -4,8 +4,10 @@ import math
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import fine_unit, plain, unit_text
+from shaftprint.fingerprint._vessel_fields import inertia_in_words
+from shaftprint.identify.judgement._number_precision import share_of
 from shaftprint.plain_table import Table, numbers, texts
-from shaftprint.report.sections.first_page._doubts import doubt_of, is_off
+from shaftprint.report.sections.first_page._doubts import is_off
 from shaftprint.tables._fingerprint import expected_text
 from shaftprint.units import MILLI
 
@@ -18,15 +20,22 @@ NUMBERS = (
     ("I_up", "Inertia before the torque gauge: engine, coupling, gearbox"),
     ("K_Q", "Torque coefficient of the propeller"),
     ("t_d + t_sp", "Delay from the set point to the fuel"),
+    ("K_p", "Proportional gain of the governor"),
+    ("K_i", "Integral gain of the governor"),
     ("gain margin", "The governor gain may grow by this factor before the speed hunts"),
+    ("phase margin", "Phase margin of the governed line"),
     ("delay margin", "So much more delay would make the speed hunt"),
 )
 """Names of quantities, and what they are in words that need no control engineering."""
 
 
+SIDES = {"downstream": "behind", "upstream": "before"}
+"""Sides of the gauge as a vessel file calls them, and in words."""
+
+
 def number_table(fingerprint: "Fingerprint") -> list[Table]:
     """Return the table of the numbers that are there; nothing where none is."""
-    there = {q.name: q for q in (*fingerprint.physical, *fingerprint.combinations, *fingerprint.margins)}
+    there = {one.name: one for kind in fingerprint.numbers.values() for one in kind}
     rows: list[tuple[str, ...]] = []
     for name, words in NUMBERS:
         quantity = there.get(name)
@@ -34,12 +43,18 @@ def number_table(fingerprint: "Fingerprint") -> list[Table]:
             continue
         value, interval = shown(quantity)
         expected = expected_shown(quantity) + (" (!)" if is_off(quantity) else "")
-        marked = words if not doubt_of(fingerprint, name) else f"{words} (not to be used)"
+        doubt = fingerprint.verdict.not_trusted.get(name)
+        known = share_of(doubt or "")
+        mark = f" (not to be used{f': known to {known}' if known else ''})"
+        marked = f"{words}{mark}" if doubt else words
         rows.append((marked, value, interval, expected))
     if not rows:
         return []
     columns = (*texts("what"), *numbers("found", "95 % interval", "vessel file"))
-    return [Table(title="What was found", columns=columns, rows=tuple(rows))]
+    stated = {side: inertia_in_words(fingerprint.vessel_fields, side) for side in SIDES}
+    note = "; ".join(f"{words} the gauge: {stated[side]}" for side, words in SIDES.items() if stated[side])
+    note = f"Inertias are those at the propeller shaft. In the vessel file, {note}." if note else ""
+    return [Table(title="What was found", columns=columns, rows=tuple(rows), note=note)]
 
 
 def shown(quantity: "Estimate") -> tuple[str, str]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from shaftprint.reasons import ReasonKind
+    from shaftprint.reasons import Reason, ReasonKind
 
 _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
     "recording clock": (
@@ -138,6 +138,24 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
 }
 
 
-def words_of(kind: "ReasonKind") -> tuple[str, str]:
-    """Return what is in doubt and what to do, each in one sentence."""
-    return _WORDS[kind]
+# Their sentences end with the field or sensor that mends them, which may be another than the usual one.
+_TOLD: "frozenset[ReasonKind]" = frozenset(
+    (
+        "speed scale",
+        "gauge scale",
+        "gear ratio",
+        "propeller",
+        "set-point scale",
+        "gauge zero",
+        "recording clock",
+    )
+)
+
+
+def words_of(reason: "Reason") -> tuple[str, str]:
+    """Return what is in doubt and what to do, each in one sentence: what the verdict says to do where it does."""
+    words, usual = _WORDS[reason.kind]
+    _, parted, told = reason.sentence.rpartition("; ")
+    if reason.kind not in _TOLD or not parted:
+        return words, usual
+    return words, f"{told[:1].upper()}{told[1:].removesuffix('.')}."

@@ -1,5 +1,6 @@
 """The questions of the superintendent about the test: is it of use, is the gauge in order, were the signals good."""
 
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -7,6 +8,7 @@ from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import plain, with_deviation
 from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint._physical import GAUGE_ZERO
+from shaftprint.identify.judgement._main_numbers import groups_lost
 from shaftprint.report.sections._cover import Card, State
 from shaftprint.report.sections.first_page._reason_words import words_of
 from shaftprint.units import PERCENT
@@ -19,6 +21,10 @@ if TYPE_CHECKING:
 COMMON_ZERO = 2.0
 # Share of the test signals that may be left out before anyone should look.
 LEFT_OUT = 0.25
+# Share of the fitted test signals that should be clear of the noise.
+CLEAR = 0.5
+# The file of a fingerprint has them in words.
+_GOOD = re.compile(r"(\d+) good spectral lines of (\d+)")
 # Share of the numbers that must be known before all is fine.
 MOST = 2.0 / 3.0
 READ_REMARKS = "Read the remarks under Findings, and mend what they name"
@@ -31,7 +37,7 @@ def usable(fingerprint: "Fingerprint") -> Card:
     trusted, others = len(verdict.trusted), len(verdict.not_trusted)
     count = f"{trusted} of {trusted + others} numbers are known well enough to be used."
     if verdict.reasons:
-        words, action = words_of(verdict.reasons[0].kind)
+        words, action = words_of(verdict.reasons[0])
         if not verdict.trustworthy:
             return Card(question=question, state="bad", sentence=words, action=action)
         return Card(question=question, state="look", sentence=f"Only in part. {words} {count}", action=action)
@@ -43,7 +49,7 @@ def usable(fingerprint: "Fingerprint") -> Card:
             action="Repeat the test with larger and longer moves of the set point.",
         )
     words = f"The model explains the measurements within their noise, and no other values do so. {count}"
-    if trusted >= MOST * (trusted + others):
+    if trusted >= MOST * (trusted + others) and not is_partial(fingerprint):
         return Card(question=question, state="fine", sentence=words)
     return Card(
         question=question,
@@ -51,6 +57,18 @@ def usable(fingerprint: "Fingerprint") -> Card:
         sentence=words,
         action="Use only the numbers that are not marked. A longer test, or the engine's control unit logged as well, "
         "makes more of them known.",
+    )
+
+
+def is_partial(fingerprint: "Fingerprint") -> bool:
+    """Return whether something that a test is made for, such as the governor's gains, cannot be used at all."""
+    return bool(groups_lost(fingerprint.verdict.trusted, fingerprint.verdict.not_trusted))
+
+
+def not_judged(card: Card) -> Card:
+    """Return a question without its answer, which needs numbers that can be used."""
+    return Card(
+        question=card.question, state="open", answer="Not judged", sentence="It needs numbers that can be used."
     )
 
 
@@ -107,7 +125,7 @@ def predicts(validations: "Sequence[Validation]") -> Card:
     actions = {
         "passes": "",
         "undecided": "Repeat the speed steps in calmer water, or make them larger where the limits leave room.",
-        "fails": "Use the model for small changes of speed only; an engineer can find what limits the large ones.",
+        "fails": "Use the model for small changes of speed only; `shaftprint limits` finds what limits large ones.",
     }
     outcome = validation.outcome
     return Card(question=question, state=states[outcome], sentence=words[outcome], action=actions[outcome])
@@ -118,13 +136,17 @@ def measured(fingerprint: "Fingerprint") -> Card:
     conditions, quality = fingerprint.conditions, fingerprint.quality
     used, left_out = len(conditions.lines_used), len(conditions.lines_left_out)
     repairs = sum(quality.repairs.values())
-    # how many are clear of the noise the verdict counts: here it is who is missing, lest one number be told twice
+    good = _GOOD.search(fingerprint.verdict.reason)
+    clear, fitted = (int(count or 0) for count in good.groups()) if good else (0, 0)
     words = (
         f"{left_out} of {used + left_out} test frequencies were left out of the fit"
         if left_out
         else "All test frequencies went into the fit, each weighted by its noise"
     )
     words += f", {repairs} {'place was' if repairs == 1 else 'places were'} repaired." if repairs else "; no repairs."
+    noisy = clear < CLEAR * fitted
+    if noisy:
+        words += f" {clear} of {fitted} in the fit stand clear of the noise."
     many = left_out > LEFT_OUT * (used + left_out)
     remarks = len(quality.remarks)
     if remarks == 1:
@@ -136,11 +158,13 @@ def measured(fingerprint: "Fingerprint") -> Card:
         actions.append(
             "Read under Data quality why so many test frequencies were left out before the test is repeated."
         )
+    if noisy:
+        actions.append("Repeat the test with larger or longer moves, or in calmer water, for more of the numbers.")
     if remarks:
         actions.append(f"{'Mend the cause' if remarks == 1 else READ_REMARKS}: a sensor, its wiring, or the test.")
     return Card(
         question="Were the measurements good?",
-        state="look" if many or remarks else "fine",
+        state="look" if actions else "fine",
         sentence=words,
         action=" ".join(actions),
     )
