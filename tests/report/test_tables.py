@@ -25,8 +25,10 @@ def test_intervals_of_the_profile_and_open_ends(fingerprint):
     upper = Estimate(name="K_p", unit="-", value=5.0, std=0.5, interval_95=(4.0, 20.0), interval_open=(False, True))
     unknown = Estimate(name="v", unit="-", value=1.0, std=math.inf, at_bound=True)
     table = parameter_table(with_parameters(fingerprint, profiled, upper, unknown), {})
-    assert [row[2] for row in table.rows] == ["0.000* to 0.099", "4.00 to 20.00*", "not known"]
+    assert [row[2] for row in table.rows] == ["0.000* to 0.099", "4.0 to 20.0*", "not known"]
     assert table.rows[2][1] == "1.000 (at its bound)"
+    # a deviation that would reach below a bound, or stop far from an open end, is not what the interval says
+    assert not any("±" in row[1] or "+/-" in row[1] for row in table.rows)
     assert table.rows[0][3] == "s"
     assert Estimate(name="a", unit="-", value=1.0, std=1.0).ends_95 == pytest.approx((-0.959964, 2.959964))
 

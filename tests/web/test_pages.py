@@ -33,6 +33,14 @@ def test_words_of_a_line(site):
     fouled = stands(site, {"causes": [worn]})
     assert (fouled.kind, fouled.word, fouled.look) == ("worn as expected", "worn as expected: propeller", "worn")
     assert fouled.note == "6.30 ± 0.80 % by now, 4.20 ± 0.80 % a year since 2026-03-01"
+    # 4.5 years of 4.2 % are 19 %, of which 6.3 % are left: the page says what took the others off
+    off = [{"at": "2028-06-19", "kind": "docking", "size": 12.6, "std": 1.2}]
+    assert stands(site, {"causes": [worn | {"off": off}]}).note == (
+        "6.30 ± 0.80 % by now, 4.20 ± 0.80 % a year since 2026-03-01, of which the docking of 2028-06-19 took off "
+        "12.6 ± 1.2 %"
+    )
+    within = STEP | {"size": 0.9, "std": 0.7}
+    assert stands(site, {"nearest": within}).note == "nearest to one: propeller 0.90 ± 0.70 %, within chance"
     cleaned = stands(site, {"causes": [worn | {"to_do": "cleaning the propeller takes it off"}]})
     assert cleaned.note.endswith(" a year since 2026-03-01. Cleaning the propeller takes it off")
     gain = STEP | {"name": "proportional gain of the governor", "to_do": "read the gains"}

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 USED, OTHER = "used", "another reason"
 # A row of the strip, and the least height of it [px].
-_ROW_PX, _LEAST_PX = 18, 160
+_ROW_PX, _LEAST_PX = 18, 60
 # Reasons that have a colour of their own; the others share one.
 _MOST_REASONS = 4
 

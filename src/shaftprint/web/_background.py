@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 PAUSE_S: Final = 30.0
 """How often the store is looked at for what others have put in [s]."""
-_SUMMARY: Final = ("word", "causes", "because", "since")
+_SUMMARY: Final = ("word", "causes", "because", "since", "nearest")
 _LOG = logging.getLogger("shaftprint.web")
 
 
@@ -76,6 +76,7 @@ def _nothing(because: str) -> dict[str, Any]:
         "causes": [],
         "because": because,
         "since": None,
+        "nearest": None,
         "sentences": [f"It cannot be told: {because.rstrip('.')}."],
         "left_out": {},
         "earlier": 0,

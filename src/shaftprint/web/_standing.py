@@ -92,7 +92,20 @@ def _said(line: LineNow, found: tuple[str, dict[str, Any]] | None) -> tuple[str,
         return "cannot be told", "one test only", "open", "from two tests on a change can be seen"
     if summary.get("because"):
         return "cannot be told", "cannot be told", "open", summary["because"]
-    return "unchanged", f"no change seen since {str(summary.get('since'))[:7]}", "fine", ""
+    return (
+        "unchanged",
+        f"no change seen since {str(summary.get('since'))[:7]}",
+        "fine",
+        _nearest(summary.get("nearest")),
+    )
+
+
+def _nearest(cause: dict[str, Any] | None) -> str:
+    """Return what comes nearest to a change, with how well it is known; nothing where a finding does not say."""
+    if not cause:
+        return ""
+    size = f"{with_deviation(cause['size'], cause['std'])} {cause['unit']}"
+    return f"nearest to one: {cause['name']} {size}{' a year' if cause['shape'] == 'ramp' else ''}, within chance"
 
 
 def change_words(cause: dict[str, Any]) -> str:
@@ -101,7 +114,12 @@ def change_words(cause: dict[str, Any]) -> str:
     if cause["shape"] != "ramp":
         return f"{size}, seen on {cause['since']}"
     by_now = _by_now(cause).removeprefix(" ")
-    return f"{by_now}{', ' if by_now else ''}{size} a year since {cause['since']}"
+    taken = "".join(
+        f", of which the {one['kind']} of {one['at']} took off "
+        f"{with_deviation(one['size'], one['std'])} {cause['unit']}"
+        for one in cause.get("off") or []
+    )
+    return f"{by_now}{', ' if by_now else ''}{size} a year since {cause['since']}{taken}"
 
 
 def _by_now(cause: dict[str, Any]) -> str:

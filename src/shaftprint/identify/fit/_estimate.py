@@ -81,7 +81,7 @@ class Estimate(Shown):
         """
         if self.at_bound:
             return None
-        if self.interval_95 is None or not math.isfinite(self.std) or any(self.interval_open):
+        if self.interval_95 is None or not math.isfinite(self.std):
             return self.std
         lower, upper = self.interval_95
         tolerance = ENDS_ALIKE * (upper - lower)

@@ -45,6 +45,7 @@ def judged_line(ship: dict[str, Any], line: str) -> dict[str, Any]:
         "causes": [_cause(drift.best, history, finding) for drift in finding.by_urgency],
         "because": finding.because,
         "since": f"{history.tests[0].at:%Y-%m-%d}" if history.tests else None,
+        "nearest": None if finding.nearest is None else _cause(finding.nearest.best, history, finding),
         "sentences": list(watch_sentences(finding, history)),
         "left_out": history.left_out | finding.left_out,
         "earlier": earlier,
@@ -68,7 +69,20 @@ def _newest(fingerprints: "dict[str, LineFingerprint]") -> "tuple[dict[str, Line
 def _cause(course: "DatedCause", history: "History", finding: "WatchFinding") -> dict[str, Any]:
     days = history.days
     now = finding.by_now.get(course.cause.name) if course.shape == "ramp" else None
+    # what was noted as taking a part of it off: size by now and slope fit each other with it alone
+    off = [
+        {
+            "at": f"{noted.event.at:%Y-%m-%d}",
+            "kind": noted.event.kind,
+            "size": course.cause.in_unit(abs(one.size)),
+            "std": course.cause.in_unit(one.std),
+        }
+        for noted in finding.noted
+        for one in noted.changes
+        if one.cause.name == course.cause.name and one.size * course.size < 0.0
+    ]
     return {
+        "off": off if course.shape == "ramp" else [],
         "expected": course.is_expected,
         "to_do": course.to_do,
         "now": None if now is None else {"size": course.cause.in_unit(now.size), "std": course.cause.in_unit(now.std)},
