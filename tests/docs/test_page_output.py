@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from pages import shown
+from pages import ROOT, shown
 
 from shaftprint.catalogue import structure
 from shaftprint.clocks import Alignment, ClockMap, LoggerClock, Stretch
@@ -129,3 +129,12 @@ def test_the_equations_of_the_free_sailing_ship_are_those_of_its_structure(frequ
     speed = np.linalg.solve(matrix, right)[starred["n"]]
     known = {name: value for name, value in values.items() if name in ship.names}
     assert speed == pytest.approx(ship.response(ship.vector(known), s)[0, 0], rel=1e-9)
+
+
+@pytest.mark.slow
+def test_the_page_of_logs_says_what_the_scan_says(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run("sail", "stan-tug-1205-service", "--service", "1h", "-o", "logs").exit_code == 0
+    printed = run("service", "scan", "logs/log-01.nc", "--vessel", "stan-tug-1205-service", "-o", "s.csv").output
+    (told,) = re.findall(r"(?m)^> (Your logger saw .*)$", (ROOT / "docs" / "service.md").read_text(encoding="utf-8"))
+    assert " ".join(printed.split()).startswith(told)

@@ -362,3 +362,15 @@ def test_a_longer_test_is_no_advice_where_a_scale_is_wrong(fingerprint):
     for question in (PROPELLER, INERTIA):
         assert answers(found)[question].action.startswith("Do what the first answer says")
         assert "%" not in answers(found)[question].sentence
+
+
+def test_an_inertia_of_the_vessel_file_is_told_at_its_shaft(fingerprint):
+    """By hand: 20 and 8.318 kg m2 at the engine are 28.318 there and 765.7 behind a gear of 5.2."""
+    rows = {"engine": 20.0, "damper": 8.318}
+    fields = {f"inertia.{name}.inertia_kg_m2": value for name, value in rows.items()}
+    fields |= {
+        f"inertia.{name}.{key}": word for name in rows for key, word in (("shaft", "engine"), ("gauge", "upstream"))
+    }
+    found = fingerprint.model_copy(update={"vessel_fields": fields | {"gearbox.ratio": 5.2}})
+    (table,) = cover_of(found).tables
+    assert "before the gauge: 28.3 kg m² at the engine shaft, times 5.2² at the propeller shaft." in table.note

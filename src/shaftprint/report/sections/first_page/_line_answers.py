@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
-from shaftprint.fingerprint._vessel_fields import INERTIA, inertia_in_words
+from shaftprint.fingerprint._vessel_fields import INERTIA
 from shaftprint.report.sections._cover import Card, State
 from shaftprint.report.sections.first_page._doubts import FAR, TOO_FAR, doubt_of, is_of_reason, is_off, mend
-from shaftprint.report.sections.first_page._number_table import shown
+from shaftprint.report.sections.first_page._number_table import inertia_of_file, shown
 from shaftprint.signals._load_reasons import LARGEST_BY_DAY
 from shaftprint.tables._fingerprint import expected_text, value_text
 from shaftprint.units import PERCENT
@@ -193,7 +193,7 @@ def other_contradictions(fingerprint: "Fingerprint") -> list[Card]:
 
 
 def _contradiction(quantity: "Estimate", fingerprint: "Fingerprint") -> str:
-    told = inertia_in_words(fingerprint.vessel_fields, "upstream") if quantity.name == "I_up" else ""
+    told = inertia_of_file(fingerprint, "upstream") if quantity.name == "I_up" else ""
     file = f" ({told})" if told else ""
     value, interval = shown(quantity)
     what = quantity.meaning or quantity.name

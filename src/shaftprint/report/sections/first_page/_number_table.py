@@ -51,10 +51,15 @@ def number_table(fingerprint: "Fingerprint") -> list[Table]:
     if not rows:
         return []
     columns = (*texts("what"), *numbers("found", "95 % interval", "vessel file"))
-    stated = {side: inertia_in_words(fingerprint.vessel_fields, side) for side in SIDES}
+    stated = {side: inertia_of_file(fingerprint, side) for side in SIDES}
     note = "; ".join(f"{words} the gauge: {stated[side]}" for side, words in SIDES.items() if stated[side])
     note = f"Inertias are those at the propeller shaft. In the vessel file, {note}." if note else ""
     return [Table(title="What was found", columns=columns, rows=tuple(rows), note=note)]
+
+
+def inertia_of_file(fingerprint: "Fingerprint", side: str) -> str:
+    """Return what the vessel file states of the inertia on one side of the gauge at the engine shaft, for a page."""
+    return inertia_in_words(fingerprint.vessel_fields, side).replace("kg m2", unit_text("kg m2")).replace("^2", "²")
 
 
 def shown(quantity: "Estimate") -> tuple[str, str]:
