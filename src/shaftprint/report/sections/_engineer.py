@@ -63,11 +63,11 @@ def number_section(inputs: Inputs) -> Section:
 
 
 def _usable(fingerprint: "Fingerprint", quantity: "Estimate") -> tuple[str, str]:
-    """Return whether a number may be used, with the reason why not, and its meaning."""
+    """Return whether a number may be used, and its meaning with the reason why not."""
     verdict = fingerprint.verdict
     doubt = verdict.not_trusted.get(quantity.name) if verdict.trustworthy else None
     if doubt:
-        return f"no: {doubt.removeprefix('it is ')}", quantity.meaning
+        return "no", f"{quantity.meaning}. Not to be used: {doubt}"
     return "yes" if verdict.trustworthy else "no", quantity.meaning
 
 

@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from shaftprint.identify.fit._estimate import Estimate
 
 NUMBERS = (
-    ("I_dn", "Inertia behind the torque gauge: propeller, shaft, entrained water"),
-    ("I_up", "Inertia before the torque gauge: engine, coupling, gearbox"),
+    ("I_dn", "Inertia behind the gauge: propeller, shaft, entrained water"),
+    ("I_up", "Inertia before the gauge: engine, coupling, gearbox"),
     ("K_Q", "Torque coefficient of the propeller"),
     ("t_d + t_sp", "Delay from the set point to the fuel"),
     ("K_p", "Proportional gain of the governor"),
     ("K_i", "Integral gain of the governor"),
     ("gain margin", "The governor gain may grow by this factor before the speed hunts"),
     ("phase margin", "Phase margin of the governed line"),
-    ("delay margin", "So much more delay would make the speed hunt"),
+    ("delay margin", "So much more delay would make it hunt"),
 )
 """Names of quantities, and what they are in words that need no control engineering."""
 
@@ -53,7 +53,7 @@ def number_table(fingerprint: "Fingerprint") -> list[Table]:
     columns = (*texts("what"), *numbers("found", "95 % interval", "vessel file"))
     stated = {side: inertia_of_file(fingerprint, side) for side in SIDES}
     note = "; ".join(f"{words} the gauge: {stated[side]}" for side, words in SIDES.items() if stated[side])
-    note = f"Inertias are those at the propeller shaft. In the vessel file, {note}." if note else ""
+    note = f"Vessel file, {note}." if note else ""
     return [Table(title="What was found", columns=columns, rows=tuple(rows), note=note)]
 
 
