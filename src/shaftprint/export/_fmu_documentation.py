@@ -55,7 +55,7 @@ def documentation(model: ExportedModel, d: FmuDescription, *, internal_step_s: f
         "<h2>Step</h2>",
         *_paragraphs([f"In co-simulation it takes steps of {1e3 * internal_step_s:g} ms by itself.{stable}"]),
         "<h2>Where it is from</h2>",
-        *_paragraphs([model.source or "Values that were given."]),
+        *_paragraphs([model.source or "Not said."]),
     ]
     body = "\n".join(plain_letters(part) for part in parts)
     head = f'<meta charset="utf-8"><title>{html_text(d.title)}</title><style>{_STYLE}{_CELLS}</style>'

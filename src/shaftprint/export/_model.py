@@ -141,7 +141,6 @@ def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None, lin
         covariance=frozen_float(block_of(model.covariance, [p.name for p in model.structure.free], uncertain)),
         not_known=model.not_known,
         remark=validation_remark(fingerprint, model.structure.name),
-        source=source_words(fingerprint),
     )
 
 
