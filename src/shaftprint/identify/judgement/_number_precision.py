@@ -14,6 +14,8 @@ from shaftprint.identify.uncertainty._profile import Interval, Profile
 WHOLE_PERCENT = 100.0
 KNOWN_POORLY = "known to this share of the value only"
 """Doubt of several numbers whose shares stand beside their names."""
+ADDS_NOTHING = "the test adds almost nothing to what was known before"
+"""Doubt of a number that a prior knows; how much smaller its deviation became may follow."""
 _KNOWN_TO, _ONLY = "it is known to ", " only"
 
 
@@ -78,7 +80,7 @@ def _doubt(
     if prior is not None and std > requirements.largest_prior_share * prior.std:
         smaller = round(100.0 * (1.0 - std / prior.std))
         by_little = f": its standard deviation is {smaller} % smaller" if smaller > 0 else ""
-        return f"the test adds almost nothing to what was known before{by_little}"
+        return f"{ADDS_NOTHING}{by_little}"
     size = _size(identification, estimate)
     if std > requirements.largest_std * size:
         share = _beyond(100.0 * std / size, 100.0 * requirements.largest_std) if size > 0.0 else ""

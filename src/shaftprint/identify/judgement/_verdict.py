@@ -38,7 +38,7 @@ from shaftprint.identify.judgement._fit_reasons import (
 from shaftprint.identify.judgement._hold_out_lines import not_predicted
 from shaftprint.identify.judgement._input_jump import jump_reasons
 from shaftprint.identify.judgement._main_numbers import groups_lost, main_in_words
-from shaftprint.identify.judgement._number_precision import KNOWN_POORLY, doubts_of, share_of
+from shaftprint.identify.judgement._number_precision import ADDS_NOTHING, KNOWN_POORLY, doubts_of, share_of
 from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._prior_contradictions import beyond_priors, contradicted_priors
 from shaftprint.identify.judgement._requirements import Requirements
@@ -302,5 +302,6 @@ def _worded(doubts: Mapping[str, str]) -> str:
         if has_several and name in shares:
             names.setdefault(KNOWN_POORLY, []).append(f"{name} ({shares[name]})")
         else:
-            names.setdefault(doubt, []).append(name)
+            # by how little is told where the number itself is
+            names.setdefault(ADDS_NOTHING if doubt.startswith(ADDS_NOTHING) else doubt, []).append(name)
     return "; ".join(f"{listed(group)}: {doubt}" for doubt, group in names.items())
