@@ -1,5 +1,6 @@
 """``shaftprint demo``: the whole way, with truth beside estimate."""
 
+import json
 import re
 import textwrap
 import tomllib
@@ -35,15 +36,19 @@ def test_report_has_its_figures(demo):
 
 
 def test_last_lines_say_what_was_found_and_where(demo):
-    _, result = demo
+    folder, result = demo
     tail = result.stdout[result.stdout.index("What was found") :]
     assert "the inertia behind the torque gauge (I_dn): " in tail
     assert "true value 17.00 kg m2." in tail
     assert "true value 0.1221 s." in tail
     assert re.search(r"true value 2\.000+\.", tail)
     assert "The thesis' way finds an inertia time of" in tail
-    # what was found in words, then the names: those that may be used, and of the others why not
-    assert tail.index("Gain margin: ") < tail.index("  * Trusted: omega_n, ") < tail.index("  * Not trusted: K_p (")
+    # what was found in words; names are where they are explained
+    assert tail.index("Gain margin: ") < tail.index("Found too, but not to be used")
+    kept = json.loads((folder / "fingerprint.json").read_text(encoding="utf-8"))["verdict"]
+    few, all_of = len(kept["trusted"]), len(kept["trusted"]) + len(kept["not_trusted"])
+    assert f"{few} of {all_of} numbers can be used: `shaftprint show` has them by name" in result.stdout
+    assert "Trusted: " not in result.stdout
     assert tail.rstrip().splitlines()[-4:-2] == [
         f"Fingerprint: {Path('demo', 'fingerprint.json')}",
         f"Report:      {Path('demo', 'index.html')}",

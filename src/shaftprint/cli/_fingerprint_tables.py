@@ -55,23 +55,26 @@ def print_found(
     found, in sentences.
     """
     verdict, truth = fingerprint.verdict, truth or {}
-    sentences, lists = verdict.sentences, []
+    sentences = verdict.sentences
     if not is_detailed():
-        # names say little to who does not know them yet: the answer in words comes first
-        lists = [one for one in sentences if one.startswith(LISTS)]
+        # names say little to who does not know them yet
         sentences = tuple(one for one in sentences if not one.startswith((ASSUMED, *LISTS)))
         if verdict.assumptions:
             # their count, and where they are told: they are the longest part of a verdict that is fine
             where = "`shaftprint show` and the report have them"
             sentences += (f"{ASSUMED} {_points(len(verdict.assumptions))} that no recording can show; {where}.",)
+        if verdict.trusted:
+            count = len(verdict.trusted)
+            sentences += (
+                f"{count} of {count + len(verdict.not_trusted)} numbers can be used: `shaftprint show` has them by "
+                "name, the others with the reason.",
+            )
     _print_verdict(fingerprint, sentences, line)
     if verdict.trustworthy:
         usable, unusable = found_sentences(fingerprint, truth)
         print_findings("What was found", [*usable, *further], is_answer=True)
         if unusable:
             print_findings("Found too, but not to be used", unusable, is_answer=True)
-    if lists:
-        print_findings("By name; `shaftprint show` says what each name means", lists, is_answer=True)
     with details():
         _print_rest(fingerprint, truth)
 
