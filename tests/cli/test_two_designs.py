@@ -92,5 +92,5 @@ def test_a_test_of_another_ship_in_a_line_of_the_store_is_said(run, ship, tmp_pa
     stated = (*store, "--ship", "A", "--line", "port")
     result = run("store", "add", ship("first", "2025-03-01T10:00:00+01:00"), *stated)
     assert "But it is of" not in result.output
-    result = run("store", "add", ship(**OTHER), *stated)
+    result = run("store", "add", ship("another", **OTHER), *stated)
     assert "But it is of Vega, and other tests of this line are of another ship" in " ".join(result.output.split())

@@ -311,7 +311,7 @@ def test_a_blf_file_that_is_cut_is_read_to_there(tmp_path, dbc):
 
 def test_a_log_of_nothing_that_is_known_says_what_to_give(tmp_path):
     path = write(tmp_path / "log.blf", [frame(t, bytes(8), identifier=0x123) for t in TIMES])
-    with pytest.raises(RecordingError, match=r"found none of them in the log \(CAN1 identifier 123: 400 frames.*--dbc"):
+    with pytest.raises(RecordingError, match=r"--dbc.*The log has CAN1 identifier 123: 400 frames, which"):
         read_recording(path)
 
 

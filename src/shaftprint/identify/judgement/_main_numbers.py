@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping
 
+from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P
 from shaftprint.identify.judgement._number_precision import share_of
 from shaftprint.spelling import listed
 
@@ -10,7 +11,7 @@ _ASKED: Mapping[str, Mapping[str, str]] = {
     "inertia": {"I_dn": "inertia"},
     "propeller": {"K_Q": "propeller"},
     "total delay": {"t_d + t_sp": "total delay"},
-    "governor gains": {"K_p": "proportional gain", "K_i": "integral gain"},
+    "governor gains": {GAUGE_K_P.name: "proportional gain", GAUGE_K_I.name: "integral gain"},
     "margins": {"gain margin": "gain margin", "phase margin": "phase margin", "delay margin": "delay margin"},
 }
 

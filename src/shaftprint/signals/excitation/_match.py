@@ -166,6 +166,7 @@ def expect_campaign(
         instead = (
             _shift_words(shift_s)
             or _upside_down(tests)
+            or _in_rad_s(set_point_v, campaign, rate_hz, start_s)
             or _clock_words(set_point_v, slow, campaign, rate_hz=rate_hz, start_s=start_s)
         )
         found = (
@@ -274,6 +275,16 @@ def _clock_words(
         f"{'slow' if share > 0.0 else 'fast'}: check the sample rate that the file declares, the clock of the "
         "recording, or that of the generator"
     )
+
+
+def _in_rad_s(set_point_v: FloatArray, campaign: Campaign, rate_hz: float, start_s: float) -> str:
+    """Return that the sines of a campaign are given in rad/s, where all that are slow are found at as many Hz."""
+    sines = tuple(one.model_copy(update={"frequency_hz": one.frequency_hz / (2.0 * np.pi)}) for one in campaign.sines)
+    meant = campaign.model_copy(update={"sines": sines})
+    slow = [one for one in sines if not _is_fast(one)]
+    if not slow or any(_explained(set_point_v, one, meant, rate_hz, start_s) < _LEAST_EXPLAINED for one in slow):
+        return ""
+    return "its sines follow it 2 pi times slower: divide the frequencies of the campaign file, which are in rad/s"
 
 
 def _upside_down(found: Sequence[FoundTest]) -> str:

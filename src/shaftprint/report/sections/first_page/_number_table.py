@@ -3,6 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
+from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P
 from shaftprint.digits import fine_unit, plain, unit_text
 from shaftprint.fingerprint._vessel_fields import inertia_in_words
 from shaftprint.identify.judgement._number_precision import share_of
@@ -20,8 +21,8 @@ NUMBERS = (
     ("I_up", "Inertia before the gauge: engine, coupling, gearbox"),
     ("K_Q", "Torque coefficient of the propeller"),
     ("t_d + t_sp", "Delay from the set point to the fuel"),
-    ("K_p", "Proportional gain of the governor"),
-    ("K_i", "Integral gain of the governor"),
+    (GAUGE_K_P.name, "Proportional gain of the governor"),
+    (GAUGE_K_I.name, "Integral gain of the governor"),
     ("gain margin", "The governor gain may grow by this factor before the speed hunts"),
     ("phase margin", "Phase margin of the governed line"),
     ("delay margin", "So much more delay would make it hunt"),
