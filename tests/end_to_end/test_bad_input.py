@@ -24,7 +24,7 @@ RECORDINGS = {
     ),
     "set point of another test": (
         {"change": lambda x: x[::-1].copy(), "channels": ("U_setpoint",)},
-        r"channel U_setpoint: expected the set point of the campaign .*check the campaign file",
+        r"channel U_setpoint: this is not the campaign of this recording: .*name the campaign file that belongs to it",
     ),
     "too short": (
         {"change": lambda x: x[:1_000_000]},
@@ -118,8 +118,8 @@ def test_campaign_in_rad_per_second(short_trip, refused, tmp_path):
     )
     path.write_text(angular, encoding="utf-8")
     sentence = refused(short_trip.path, path)
-    assert sentence.startswith("S1: expected the set point to move at 0.125664 Hz, found 0.01")
-    assert sentence.endswith("the campaign's frequency_hz seems to be in rad/s; divide it by 2 pi.")
+    assert sentence.startswith("channel U_setpoint: expected the set point of the campaign")
+    assert "2 pi times slower: divide the frequencies of the campaign file, which are in rad/s" in sentence
 
 
 def test_campaign_of_another_test(short_trip, refused):

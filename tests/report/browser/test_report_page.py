@@ -252,7 +252,7 @@ def test_the_first_screen_holds_the_verdict(opened, fingerprint):
     words = opened.page.locator("#found").inner_text()
     assert "The test can be used" in words
     assert "Does the engine hold its speed without hunting?" in words
-    assert "Inertia behind the torque gauge" in words
+    assert "Inertia behind the gauge" in words
 
 
 def contrast(opened, selector):

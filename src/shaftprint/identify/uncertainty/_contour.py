@@ -239,6 +239,7 @@ class _Position:
         theta = np.array(np.broadcast_to(theta, (rows.size, theta.shape[-1])))
         cost, gradient, hessian = quadratic(*residuals(theta, np.arange(rows.size)))
         estimate = np.broadcast_to(climb.start, theta.shape)
+        slope = side[:, None] * numbers.slopes(theta, diagonals(hessian))
         return cls(
             rows=np.arange(rows.size),
             side=side,
@@ -250,7 +251,8 @@ class _Position:
             gradient=gradient,
             hessian=hessian,
             value=side * numbers.values(theta),
-            slope=side[:, None] * numbers.slopes(theta, diagonals(hessian)),
+            # at the end of another row a number may have no slope along one that is 0 there: it is climbed beside it
+            slope=np.where(np.isfinite(slope), slope, 0.0),
             damping=np.full(rows.size, LEAST_DAMPING),
             growth=np.ones(rows.size),
         )
