@@ -101,7 +101,8 @@ class _Courses:
 
     def means(self, start_s: FloatArray, stop_s: FloatArray, within_s: tuple[float, float]) -> FloatArray:
         """Return the mean of each course in windows of the test, shape (windows, courses)."""
-        begin, end = (of[:, np.newaxis] - within_s[0] for of in (start_s, stop_s))
+        # a leg whose file says that it settled before it began is taken from its beginning
+        begin, end = (np.maximum(of[:, np.newaxis] - within_s[0], 0.0) for of in (start_s, stop_s))
         time_s = np.maximum(self.time_s, 1e-9)
         step = np.clip((end + within_s[0] - self.time_s) / (end - begin), 0.0, 1.0)
         drift = 0.5 * (begin + end) / (within_s[1] - within_s[0])
