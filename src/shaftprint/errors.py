@@ -6,6 +6,7 @@
     ├── SettingsError         a vessel or campaign file that cannot be used
     ├── RecordingError        a logger file that cannot be read
     ├── SignalError           a channel that does not give a usable signal
+    │   └── ForeignCampaignError  a recording that shows the set point of another campaign
     ├── ClockError            two recordings whose clocks cannot be brought together
     ├── ResponseError         a test line or response that cannot be estimated
     ├── PropellerError        a propeller or speed for which no curve was measured
@@ -30,6 +31,8 @@
 Every message says which file, channel, second or field, what was expected, what was found and what to do.
 """
 
+from typing import ClassVar
+
 
 class ShaftprintError(Exception):
     """Base of all errors that a user can mend."""
@@ -49,6 +52,12 @@ class SignalError(ShaftprintError):
 
 class ForeignCampaignError(SignalError):
     """A recording shows the set point of another campaign."""
+
+    REMEDY: ClassVar[str] = (
+        "; name the campaign file that belongs to it, or make one of the recording with `shaftprint new campaign FILE "
+        "--from RECORDING`."
+    )
+    """What it ends with, where nobody knows which campaign it is."""
 
 
 class ClockError(ShaftprintError):

@@ -112,7 +112,9 @@ def tested(
             fitting = _campaign_that_fits(opened, asked, readings)
             if fitting is None:
                 return InspectedTest(ship=ship, planned=asked, tests=tests, signals=None, spectra=None, refusal=error)
-            told = SignalError(f"{str(error).split('; name the')[0]}; it is {fitting}, which fits: name that.")
+            told = SignalError(
+                f"{str(error).removesuffix(ForeignCampaignError.REMEDY)}; it is {fitting}, which fits: name that."
+            )
             return InspectedTest(ship=ship, planned=asked, tests=(), signals=None, spectra=None, refusal=told)
         except ShaftprintError as error:
             # told below the tables too, which show what the campaign should be

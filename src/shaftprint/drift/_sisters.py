@@ -31,7 +31,7 @@ from shaftprint.drift._differ import NOT_DETERMINED, NOT_TOLD, UNLIKELY
 from shaftprint.drift._discoveries import discoveries
 from shaftprint.drift._finding import ShipChange, SizedCause, odds_against
 from shaftprint.drift._single_test import is_share
-from shaftprint.fingerprint._design import differences_of_design, in_short
+from shaftprint.fingerprint._design import another_design, in_short
 
 FEWEST_SISTERS = 4
 """Ships that a class has at least: three others tell how much ships differ."""
@@ -64,9 +64,9 @@ def judge_sisters(
     """
     if len(ships) < FEWEST_SISTERS:
         return _nothing(f"expected {FEWEST_SISTERS} ships with tests that can be judged or more, found {len(ships)}")
-    for ship in ships[1:]:
-        if designs := differences_of_design(*(one.tests[0].fingerprint.stated_fields for one in (ships[0], ship))):
-            return _nothing(f"{ships[0].name} and {ship.name}: {in_short(designs)}")
+    place, designs = another_design([ship.tests[0].fingerprint.stated_fields for ship in ships])
+    if designs:
+        return _nothing(f"{ships[0].name} and {ships[place].name}: {in_short(designs)}")
     numbers = class_numbers(ships, load_repeatability=load_repeatability, tolerances=tolerances)
     if not numbers.causes:
         return _nothing(NOT_TOLD, numbers.left_out)

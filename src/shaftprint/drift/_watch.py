@@ -23,7 +23,7 @@ from shaftprint.drift._drift_finding import Drift, WatchFinding
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
 from shaftprint.drift._noted import noted_changes
 from shaftprint.drift._series import series_of
-from shaftprint.fingerprint._design import differences_of_design, in_short
+from shaftprint.fingerprint._design import another_design, in_short
 
 HORIZON = 20
 """Tests over which false alarms are counted: five years of quarterly tests."""
@@ -57,10 +57,9 @@ def watch(
     count = len(history.tests)
     if count < FEWEST_TESTS:
         return _nothing(f"expected {FEWEST_TESTS} tests that can be judged or more, found {count}", {})
-    first = history.tests[0].fingerprint.stated_fields
-    for test in history.tests[1:]:
-        if designs := differences_of_design(first, test.fingerprint.stated_fields):
-            return _nothing(f"{history.tests[0].name} and {test.name}: {in_short(designs)}", {})
+    place, designs = another_design([test.fingerprint.stated_fields for test in history.tests])
+    if designs:
+        return _nothing(f"{history.tests[0].name} and {history.tests[place].name}: {in_short(designs)}", {})
     extended = _extended(history, horizon)
     series = series_of(extended, made=count, load_repeatability=load_repeatability)
     left_out = series.left_out

@@ -1,6 +1,6 @@
 """Whether two vessel files are of ships of one design: what differs as built is no change of a ship."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -65,6 +65,15 @@ def differences_of_design(
     if numbers[0] is not None and numbers[0] == numbers[1]:
         return ()
     return found if first.get("name") != other.get("name") or fields.issuperset(_ANOTHER_LINE) else ()
+
+
+def another_design(every: Sequence[Mapping[str, FieldValue]]) -> tuple[int, tuple[DesignDifference, ...]]:
+    """Return which vessel file is the first of another design than the first of all, and in what; 0 where none is.
+
+    ``every``: fields of the vessel files.
+    """
+    apart = ((place, differences_of_design(every[0], other)) for place, other in enumerate(every))
+    return next(((place, found) for place, found in apart if found), (0, ()))
 
 
 def _are_apart(first: FieldValue, other: FieldValue, share: float) -> bool:

@@ -259,7 +259,8 @@ def fit_segments(records: Sequence[Record], model: ServiceModel, *, progress: Pr
     of_noise: FloatArray = np.linalg.inv(sums.information).astype(np.float64)
     covariance, freedom = clustered(course.each, sums.prior, of_noise)
     if model.sails:
-        covariance *= np.outer(wider_underway(model.free), wider_underway(model.free))
+        wider = wider_underway(model.free)
+        covariance *= np.outer(wider, wider)
     misfit = misfit_of(course.runs, course.whitening, model, theta, sums.prior)
     return ServiceFit(
         theta=frozen_float(theta),

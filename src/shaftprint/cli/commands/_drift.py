@@ -31,7 +31,7 @@ with late():
     from shaftprint.drift._history import History, history_of
     from shaftprint.drift._watch import watch
     from shaftprint.drift._words import limit_sentence, watch_sentences
-    from shaftprint.fingerprint._design import differences_of_design
+    from shaftprint.fingerprint._design import another_design
     from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.report._history_page import render_history, sizes_of_tests
     from shaftprint.report.comparison._history_tables import course_table, history_table, other_course_table
@@ -161,14 +161,15 @@ def _of_files(tests: tuple[str, ...]) -> tuple[str, dict[str, LineFingerprint], 
     named = {_called(Path(path)): any_fingerprint_at(Path(path)) for path in tests}
     if len(named) < len(tests):
         raise click.UsageError("expected fingerprints in folders or files of different names, found two alike.")
-    (name, first), *others = named.items()
-    for other_name, other in others:
-        if designs := differences_of_design(first.stated_fields, other.stated_fields):
-            raise FingerprintError(
-                f"{other_name}: expected a test of {first.title}, as {name} is, found one of {other.title}: "
-                f"{listed([one.both for one in designs])}; leave it out."
-            )
-    return first.title, named, ()
+    names, fingerprints = list(named), list(named.values())
+    place, designs = another_design([one.stated_fields for one in fingerprints])
+    title = fingerprints[0].title
+    if designs:
+        raise FingerprintError(
+            f"{names[place]}: expected a test of {title}, as {names[0]} is, found one of {fingerprints[place].title}: "
+            f"{listed([one.both for one in designs])}; leave it out."
+        )
+    return title, named, ()
 
 
 def _of_ship(ship: str, url: str, line: str | None) -> tuple[str, dict[str, LineFingerprint], tuple[Event, ...]]:

@@ -175,8 +175,7 @@ def expect_campaign(
         )
         if not instead:
             raise ForeignCampaignError(
-                f"channel {channel}: this is not the campaign of this recording: {found}; name the campaign file that "
-                "belongs to it, or make one of the recording with `shaftprint new campaign FILE --from RECORDING`."
+                f"channel {channel}: this is not the campaign of this recording: {found}{ForeignCampaignError.REMEDY}"
             )
         raise SignalError(
             f"channel {channel}: {found}: {instead}; `shaftprint inspect` with --vessel, "
